@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# tautline_add_module(NAME LINK LIBRARY): the VTK module Tautline::NAME of the sources in a folder and in those of its
-# sub-folders that have no CMakeLists.txt. vtkName.h with a vtkName.cxx is a class, which is wrapped and installed; vtkName.h
-# alone is installed; all other headers are private. The module links the library, and has the proxies of
-# ServerManager/NAME.xml.in if there is such a file.
+# tautline_add_module(NAME LINK LIBRARY): defines the VTK module Tautline::NAME with the sources in the current folder
+# and in its subfolders without a CMakeLists.txt. vtkName.h with vtkName.cxx is a class, which is wrapped and installed;
+# vtkName.h alone is installed; all other headers are private. The module links the library, and has the proxies of
+# ServerManager/NAME.xml.in if this file exists.
 function (tautline_add_module name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "LINK" "")
   set(folder "${CMAKE_CURRENT_SOURCE_DIR}")

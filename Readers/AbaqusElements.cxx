@@ -10,14 +10,14 @@ namespace tautline
 {
 namespace
 {
-// Abaqus' wedge has the normal of 1 2 3 inwards, VTK's outwards; the middle nodes of the edges are
-// bottom, top, upright in both.
+// In Abaqus's wedge the normal of nodes 1 2 3 points inward, in VTK's outward; the midside nodes of
+// the edges are in the order bottom, top, vertical in both.
 constexpr int AbaqusWedge[] = { 0, 2, 1, 3, 5, 4 };
 constexpr int AbaqusWedge15[] = { 0, 2, 1, 3, 5, 4, 8, 7, 6, 11, 10, 9, 12, 14, 13 };
-// node 21 is the center, 22 to 27 are those of the faces
+// node 21 is the center, 22 to 27 are on the faces
 constexpr int AbaqusHexahedron27[] = { 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17,
   18, 19, 26, 24, 23, 25, 21, 22, 20 };
-constexpr int AbaqusLine3[] = { 0, 2, 1 }; // the second node is the one in the middle
+constexpr int AbaqusLine3[] = { 0, 2, 1 }; // the second node is the middle node
 
 struct ElementRow
 {
@@ -44,7 +44,7 @@ constexpr const char* LineFamilies[] = { "T2D", "T3D", "DC1D", "DCC1D", "AC1D", 
 /// The number is the order, not the number of nodes.
 constexpr const char* OrderFamilies[] = { "SAX", "DSAX", "MAX", "SFMAX" };
 constexpr const char* BeamFamilies[] = { "B", "PIPE", "ELBOW", "FRAME" };
-/// Elements without a volume, area or length; beginnings of names.
+/// Elements without a volume, area or length, by the beginnings of their names.
 constexpr const char* SizelessElements[] = { "MASS", "ROTARY", "SPRING", "DASHPOT", "CONN", "GAP",
   "ITS", "JOINT", "DCOUP", "HEATCAP", "ISL", "ITT", "IRS", "DGAP", "PSI", "LS", "FRIC" };
 

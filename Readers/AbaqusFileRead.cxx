@@ -12,12 +12,12 @@ namespace tautline
 {
 namespace
 {
-/// Sets become arrays up to this number; of others the names are in a warning.
+/// Up to this number, sets become arrays; the names of others are listed in a warning.
 constexpr std::size_t MaxSets = 256;
 
 using CardNumbers = std::vector<Index>;
 
-/// A part, an instance with a mesh of its own, or what stands outside of parts.
+/// A part, an instance with its own mesh, or the content outside of parts.
 struct AbaqusPart
 {
   NumberedNodes nodes;
@@ -36,13 +36,13 @@ struct AbaqusPlacement
 struct AbaqusInstance
 {
   std::string name;
-  std::string part; ///< in capitals
+  std::string part; ///< in uppercase
   AbaqusPlacement placement;
   AbaqusPart own; ///< nodes and elements between *INSTANCE and *END INSTANCE
   CardPlace place;
 };
 
-/// A set of the assembly: members of an instance; of the mesh outside of parts for "".
+/// A set of the assembly: members of an instance, or of the mesh outside of parts for "".
 struct AssemblySet
 {
   bool ofNodes;
@@ -50,7 +50,7 @@ struct AssemblySet
   CardNumbers members;
 };
 
-/// A keyword line: the keyword and its parameters, in capitals, with their values.
+/// A keyword line: the keyword and its parameters, in uppercase, with their values.
 struct AbaqusKeyword
 {
   std::string name;
@@ -98,7 +98,7 @@ private:
   std::vector<std::string> PartOrder;
   std::deque<AbaqusInstance> Instances;
   std::vector<AssemblySet> AssemblySets;
-  std::string InPart; ///< the name in capitals
+  std::string InPart; ///< the name in uppercase
   bool InInstance = false, InAssembly = false;
   std::map<std::string, Index> LeftOut; ///< elements by type
   /// Members of the sets as points and cells of the mesh, by name.
@@ -141,7 +141,7 @@ AbaqusKeyword AbaqusParser::readKeyword(std::string_view line)
   return keyword;
 }
 
-/// The next line of data; false, with the line kept, where a keyword or the end of the file comes.
+/// The next data line; false at a keyword, whose line is kept, or at the end of the file.
 bool AbaqusParser::nextData(std::vector<std::string_view>& fields)
 {
   for (std::string_view line; this->Text.next(line);)
@@ -246,7 +246,7 @@ void AbaqusParser::readElements(const AbaqusKeyword& keyword)
     {
       for (const std::string_view field : fields)
       {
-        if (!field.empty()) // behind the comma at the end of a line
+        if (!field.empty()) // after the comma at the end of a line
         {
           row.push_back(this->integer(field, "the number of a node"));
         }
@@ -358,7 +358,7 @@ void AbaqusParser::readSet(const AbaqusKeyword& keyword, bool ofNodes)
   set.insert(set.end(), members.begin(), members.end());
 }
 
-/// Turns about the axis through a and b.
+/// Rotates about the axis through a and b.
 void setRotation(AbaqusPlacement& placement, const double* a, const double* b, double angle)
 {
   double axis[3] = { b[0] - a[0], b[1] - a[1], b[2] - a[2] };
@@ -377,7 +377,7 @@ void setRotation(AbaqusPlacement& placement, const double* a, const double* b, d
         (i == j ? c : 0.0) + (1.0 - c) * axis[i] * axis[j] + s * cross[3 * i + j];
     }
   }
-  // the axis goes through a: x + t is turned about it
+  // the axis passes through a: x + t is rotated about it
   std::array<double, 3> moved{};
   for (std::size_t i = 0; i < 3; ++i)
   {
@@ -615,7 +615,7 @@ MeshFile AbaqusParser::assemble()
     this->append(mesh, own ? instance.own : this->Parts.at(instance.part), instance.placement,
       instance.name, instanceOfCell);
   }
-  for (const std::string& part : this->PartOrder) // a file of parts alone
+  for (const std::string& part : this->PartOrder) // a file with only parts
   {
     if (this->Instances.empty())
     {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ArrayIndex.h
- * @brief Numbers of points, cells and faces as indices of std::vector.
- * Internal: not installed.
+ * @brief Converts numbers of points, cells and faces to indices of std::vector. Internal: not
+ * installed.
  */
 #ifndef tautline_ArrayIndex_h
 #define tautline_ArrayIndex_h

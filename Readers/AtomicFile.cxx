@@ -36,7 +36,7 @@ std::string folderOf(const std::string& name)
   refuse(name, std::string(std::strerror(error)));
 }
 
-/// What a link points to, relative to the directory of the link.
+/// The target of a link, relative to the directory of the link.
 std::string linkTarget(const std::string& link)
 {
   constexpr std::size_t Longest = 4096;
@@ -50,7 +50,7 @@ std::string linkTarget(const std::string& link)
   return to[0] == '/' ? to : folderOf(link) + "/" + to;
 }
 
-/// The name behind all links, one after the other.
+/// The name after following all links.
 std::string followLinks(const std::string& name)
 {
   constexpr int MostLinks = 40; // as in Linux
@@ -78,7 +78,7 @@ std::string followLinks(const std::string& name)
 
 std::string temporaryName(const std::string& folder)
 {
-  std::random_device random; // of the system, not a sequence from a seed
+  std::random_device random; // from the system, not a seeded sequence
   const auto high = static_cast<std::uint64_t>(random());
   char text[64];
   std::snprintf(text, sizeof(text), "/.tautline-%016llx.part",
@@ -161,7 +161,7 @@ void AtomicFile::write(const char* bytes, std::size_t count)
 //------------------------------------------------------------------------------
 void AtomicFile::finish()
 {
-  // EINVAL: a file system that cannot force content to its disk
+  // EINVAL: the file system cannot flush content to its disk
   if (fsync(this->Descriptor) != 0 && errno != EINVAL)
   {
     this->fail(errno);
@@ -188,7 +188,7 @@ void AtomicFile::syncName() const
   const int folder = open(folderOf(this->Target).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (folder >= 0)
   {
-    fsync(folder); // not every file system can
+    fsync(folder); // not supported by every file system
     close(folder);
   }
 }

@@ -8,7 +8,7 @@ namespace tautline
 {
 namespace
 {
-/// Files that include each other would never end.
+/// Prevents endless recursion of files that include each other.
 constexpr std::size_t MaxIncluded = 1000;
 constexpr std::size_t MaxCellNodes = 27;
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CardFile.h
- * @brief What readers of Abaqus and Nastran files share: lines, included files, cells by node
- * number.
+ * @brief Common parts of the readers of Abaqus and Nastran files: lines, included files, cells by
+ * node number.
  */
 #ifndef tautline_CardFile_h
 #define tautline_CardFile_h
@@ -28,11 +28,11 @@ struct CardPlace
   [[noreturn]] void fail(const std::string& problem) const { this->cursor->failAt(at, problem); }
 };
 
-/// A file and all that it includes; stays in memory for messages.
+/// A file and all included files; stays in memory for messages.
 class CardText
 {
 public:
-  /// A file and the place in it.
+  /// A file and the position in it.
   struct Source
   {
     Source(const std::string& name, const std::string& why)
@@ -47,27 +47,27 @@ public:
   explicit CardText(const std::string& name);
   /// The next line, without its end; false at the end of the last file.
   bool next(std::string_view& line);
-  /// The line that next() gave last.
+  /// The position of the last line from next().
   CardPlace place() const { return this->Last; }
-  /// The same line again.
+  /// Makes next() return the same line again.
   void putBack() { this->Again = true; }
-  /// Continues with another file, whose name is relative to the first one; then with this one.
-  /// Fails if that cannot be read, or is being read.
+  /// Continues with another file, whose name is relative to the first one, and then with this one.
+  /// Fails if the other file cannot be read or is already being read.
   void include(const std::string& name);
   [[noreturn]] void fail(const std::string& problem) const { this->Last.fail(problem); }
 
 private:
   std::string Folder;
-  std::deque<Source> Sources; ///< all that were opened
+  std::deque<Source> Sources; ///< all opened files
   std::vector<Source*> Open;
   CardPlace Last;
   std::string_view Line;
   bool Again = false;
 };
 
-/// The text without blanks at both ends.
+/// The text without leading and trailing blanks.
 std::string_view trimmed(std::string_view text);
-/// In capitals.
+/// The text in uppercase.
 std::string upperCase(std::string_view text);
 /// The parts between commas, trimmed.
 std::vector<std::string_view> splitAtCommas(std::string_view line);
@@ -76,12 +76,13 @@ std::vector<std::string_view> splitAtCommas(std::string_view line);
 struct NumberedCells
 {
   std::vector<unsigned char> types;
-  std::vector<Index> numbers; ///< of the cells
+  std::vector<Index> numbers; ///< the numbers of the cells
   std::vector<Index> offsets = { 0 };
   std::vector<Index> nodes; ///< their numbers, in VTK's order
   std::vector<CardPlace> places;
 
-  /// `order[i]` is the place in the file's cell of node i of VTK's cell; null where both agree.
+  /// `order[i]` is the position of node i of VTK's cell in the file's cell; null if both orders
+  /// agree.
   void add(
     unsigned char type, Index number, const Index* fileNodes, const int* order, CardPlace place);
 };
@@ -93,7 +94,7 @@ struct NumberedNodes
   std::vector<Index> numbers;
   std::vector<double> coordinates;
 
-  /// Fails at a number that was used before with other coordinates.
+  /// Fails if the number was used before with other coordinates.
   void add(Index number, const double* point, CardPlace place);
   /// The position of a number; fails for an unknown one.
   Index find(Index number, CardPlace place) const;

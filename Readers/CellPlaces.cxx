@@ -16,7 +16,7 @@ bool isLine(unsigned char type)
   return type == FileLine || type == FileLine3 || type == FileLagrangeLine;
 }
 
-/// The type of a cell for ElementType; null for cells that it has not.
+/// The type of a cell for ElementType; null for cells that it does not support.
 const ElementType* elementType(unsigned char type, Index nodes)
 {
   try
@@ -29,7 +29,7 @@ const ElementType* elementType(unsigned char type, Index nodes)
   }
 }
 
-/// Whether all nodes are on the lattice of the order: not those of cells with bubbles.
+/// Whether all nodes are on the lattice of the order; false for cells with bubble nodes.
 bool isOnLattice(const ElementType& element)
 {
   const int order = element.orders()[0];

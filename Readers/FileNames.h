@@ -15,7 +15,7 @@
 
 namespace tautline
 {
-/// "a/b.1.NODE" gives "a/b.1" and "node"; without an ending, the name and "".
+/// "a/b.1.NODE" gives "a/b.1" and "node"; without an extension, the name and "".
 inline std::pair<std::string, std::string> splitExtension(const std::string& name)
 {
   const std::size_t dot = name.find_last_of("./\\");

@@ -24,7 +24,7 @@ std::string markOf(const FileContent& file)
 //------------------------------------------------------------------------------
 std::vector<std::string> replaceSet(std::vector<TextOutput>& files)
 {
-  // The mark depends on the contents alone: the same mesh gives the same files.
+  // The mark depends only on the contents: the same mesh gives the same files.
   std::uint64_t sum = 0;
   for (const TextOutput& file : files)
   {
@@ -54,8 +54,8 @@ const FileContent& SetCheck::add(const FileContent& file)
   if (!mark.empty() && !this->Mark.empty() && mark != this->Mark)
   {
     throw FileError(file.name() + ": does not belong to " + this->Name +
-      ": the marks in their last lines differ, a writer was interrupted or a file was replaced; "
-      "write the mesh again, or remove the lines if the files do belong together");
+      ": the marks in their last lines differ, because a writer was interrupted or a file was "
+      "replaced; write the mesh again, or remove these lines if the files do belong together");
   }
   if (!mark.empty())
   {

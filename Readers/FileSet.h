@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file FileSet.h
- * @brief Files that belong together: the same mark in each tells a reader that one write made them.
+ * @brief Files that belong together: the same mark in each shows that they were written together.
  *
- * The files of a set are renamed one after the other. A process that is killed in between leaves
- * files of two writes. Each file of a set therefore ends with the comment
+ * The files of a set are renamed one after the other. If the process is killed in between, the
+ * files are from two different writes. Each file of a set therefore ends with the comment
  *
  *     # Tautline set 0123456789abcdef
  *
- * of a check sum of the contents of all files, which other programs skip. Files with different
- * marks are refused; files without a mark, of other programs, are not compared. A file that was
- * edited keeps its mark.
+ * with a checksum of the contents of all files; other programs skip the comment. Files with
+ * different marks are rejected; files without a mark, from other programs, are not compared. An
+ * edited file keeps its mark.
  */
 #ifndef tautline_FileSet_h
 #define tautline_FileSet_h
@@ -21,8 +21,8 @@
 namespace tautline
 {
 /**
- * @brief Marks the files, if there are several, forces all of them to the disk and then replaces
- * the older ones; the first, to which the others belong, is the last. Throws FileError.
+ * @brief Marks the files, if there are several, flushes all of them to the disk and then replaces
+ * the old ones; the first one, to which the others belong, is replaced last. Throws FileError.
  * @return the names of the files
  */
 std::vector<std::string> replaceSet(std::vector<TextOutput>& files);
@@ -36,7 +36,7 @@ public:
 
 private:
   std::string Mark; ///< the first found
-  std::string Name; ///< of its file
+  std::string Name; ///< the name of its file
 };
 }
 #endif

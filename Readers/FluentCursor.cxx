@@ -19,7 +19,7 @@ bool isSpace(char c)
 //------------------------------------------------------------------------------
 void FluentCursor::failIn(const char* place, const std::string& problem) const
 {
-  if (this->FirstBinary && place > this->FirstBinary) // lines mean nothing there
+  if (this->FirstBinary && place > this->FirstBinary) // lines have no meaning there
   {
     this->failAt(this->FirstBinary,
       "byte " + std::to_string(place - this->Start) +
@@ -170,7 +170,7 @@ bool FluentCursor::nextSection(FluentSection& section)
   section.begin = this->place();
   if (!this->take('('))
   {
-    this->failHere("expected '(', with which each section of a file of Fluent begins");
+    this->failHere("expected '(', with which each section of a Fluent file begins");
   }
   section.index = this->decimal("the number of a section");
   section.binary = section.index >= firstBinary;

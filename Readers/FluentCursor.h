@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file FluentCursor.h
- * @brief A place in a file of Fluent: nested parentheses, hexadecimal numbers, binary sections.
+ * @brief A position in a Fluent file: nested parentheses, hexadecimal numbers, binary sections.
  * Internal: not installed.
  */
 #ifndef tautline_FluentCursor_h
@@ -11,14 +11,14 @@
 
 namespace tautline
 {
-/// The beginning of a section: its number, and what follows from the kind of numbers it has.
+/// The beginning of a section: its number, and the properties that follow from its number type.
 struct FluentSection
 {
   const char* begin = nullptr;
-  Index index = 0;           ///< as it is in the file: 10, 2010, 3010
+  Index index = 0;           ///< as in the file: 10, 2010, 3010
   int kind = 0;              ///< the last three digits: 10
   bool binary = false;       ///< 2010, 3010
-  std::size_t realBytes = 8; ///< of 2010: 4
+  std::size_t realBytes = 8; ///< 4 for 2010
 };
 
 class FluentCursor : public TextCursor
@@ -29,18 +29,18 @@ public:
   {
   }
 
-  /// To the next character that is no space; false at the end of the file.
+  /// Moves to the next character that is not a space; false at the end of the file.
   bool skipSpace();
-  /// Moves past a character if it is the next one that is no space.
+  /// Moves past a character if it is the next one that is not a space.
   bool take(char c);
-  /// The same; throws where it is another one.
+  /// The same, but throws if it is a different character.
   void expect(char c, const char* after);
   /// Text up to a space or parenthesis.
   std::string name();
 
   /// Starts the next section; false at the end of the file.
   bool nextSection(FluentSection& section);
-  /// Numbers in base 16 between parentheses, at least `fewest`.
+  /// Hexadecimal numbers between parentheses, at least `fewest`.
   std::vector<Index> header(const char* what, std::size_t fewest);
   /// Starts the body after a header; false if there is none.
   bool openBody() { return this->take('('); }
@@ -51,19 +51,19 @@ public:
     this->closeSection(section, what);
   }
   void closeSection(const FluentSection& section, const char* what);
-  /// Ends a section, of which anything may be left.
+  /// Ends a section, skipping the rest of it.
   void skipSection(const FluentSection& section);
 
-  /// A whole number within [low, high] of the body: text in base 16, or 4 bytes.
+  /// An integer within [low, high] in the body: hexadecimal text, or 4 bytes.
   Index whole(const FluentSection& section, const char* what, Index low, Index high)
   {
     return section.binary ? this->binaryWhole(what, low, high) : this->hex(what, low, high);
   }
-  /// A finite coordinate of the body.
+  /// A finite coordinate in the body.
   double real(const FluentSection& section, const char* what);
   Index decimal(const char* what);
 
-  /// Throws: with the line, or with the byte after the first binary section.
+  /// Throws with the line, or, after the first binary section, with the byte.
   [[noreturn]] void failHere(const std::string& problem) const
   {
     this->failIn(this->place(), problem);

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file FluentFile.h
- * @brief The mesh in a case or mesh file of ANSYS Fluent (.cas, .msh): text or binary sections.
+ * @brief Reads the mesh in a case or mesh file of ANSYS Fluent (.cas, .msh), with text or binary
+ * sections.
  *
- * Files of the Common Fluids Format (.cas.h5) are not read.
+ * Files in the Common Fluids Format (.cas.h5) are not supported.
  */
 #ifndef tautline_FluentFile_h
 #define tautline_FluentFile_h
@@ -21,22 +22,22 @@ struct FluentMesh
   std::vector<std::string> warnings;
 };
 
-/// Whether a file begins as a section does: with a parenthesis and a number.
+/// Whether a file begins like a section, with a parenthesis and a number.
 TAUTLINEREADERS_EXPORT bool isFluentFile(const std::string& name);
 
 /**
- * @brief Reads the nodes, faces and zones of a file; its other sections are passed over.
+ * @brief Reads the nodes, faces and zones of a file; other sections are skipped.
  *
- * Types of patches are those of Fluent ("velocity-inlet"), but "cyclic" for pairs of periodic zones
+ * Patch types are as in Fluent ("velocity-inlet"), except "cyclic" for pairs of periodic zones
  * whose faces the file lists: the faces of both correspond by their order.
  *
- * Throws FileError with the line (in a file with binary sections, the byte) for what is truncated
- * or inconsistent, and for what needs a conversion in Fluent: hanging nodes of adapted meshes,
- * intersected mesh interfaces, meshes of a surface only.
+ * Throws FileError with the line (in a file with binary sections, the byte) for truncated or
+ * inconsistent data, and for meshes that need a conversion in Fluent: hanging nodes of adapted
+ * meshes, intersected mesh interfaces, surface-only meshes.
  */
 TAUTLINEREADERS_EXPORT FluentMesh readFluent(const std::string& name);
 
-/// Cells as cellsOf() finds them; in two dimensions triangles, quadrilaterals and polygons. Throws
+/// The cells as from cellsOf(); in two dimensions, triangles, quadrilaterals and polygons. Throws
 /// FoamDefect.
 TAUTLINEREADERS_EXPORT FoamCells fluentCells(const FoamMesh& mesh, int dimension);
 }

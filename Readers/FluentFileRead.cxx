@@ -17,7 +17,7 @@ namespace tautline
 {
 namespace
 {
-/// Numbers of sections, the last three digits of those that are binary.
+/// Section numbers; the last three digits for binary sections.
 enum SectionKind
 {
   Dimension = 2,
@@ -37,13 +37,13 @@ enum SectionKind
 constexpr Index Interior = 2, ParentFaces = 31, InactiveCells = 32;
 constexpr Index Linear = 2, Mixed = 0, Polygonal = 5;
 constexpr const char* HangingNodes =
-  "the mesh was adapted and has hanging nodes (parents of cells or faces), which are not read: in "
-  "Fluent, make these cells polyhedra (mesh/polyhedra/convert-hanging-nodes) and save again";
-constexpr const char* Interfaces =
-  "the mesh has intersected interfaces, which are not read: delete the mesh interfaces in Fluent "
+  "the mesh was adapted and has hanging nodes (parents of cells or faces), which are not "
+  "supported: in Fluent, convert these cells to polyhedra (mesh/polyhedra/convert-hanging-nodes) "
   "and save again";
+constexpr const char* Interfaces = "the mesh has intersected interfaces, which are not supported: "
+                                   "delete the mesh interfaces in Fluent and save again";
 
-/// What a file without names says of a zone of faces.
+/// The type of a face zone in a file without zone names.
 std::string typeOf(Index code)
 {
   static const std::map<Index, const char*> types = { { Interior, "interior" }, { 3, "wall" },
@@ -58,18 +58,18 @@ std::string typeOf(Index code)
 struct Range
 {
   Index zone = 0;
-  Index first = 0; ///< its number in the file
-  Index begin = 0; ///< its place in the arrays
+  Index first = 0; ///< first number in the file
+  Index begin = 0; ///< start in the arrays
   Index count = 0;
   Index code = 0;
 };
 
-/// A zone of faces and what is known of it.
+/// A zone of faces and its properties.
 struct FaceZone
 {
   Index id = 0;
   Index code = 0;
-  std::vector<Index> faces; ///< places in the arrays
+  std::vector<Index> faces; ///< indices in the arrays
 };
 
 struct PeriodicPair
@@ -78,14 +78,14 @@ struct PeriodicPair
   std::vector<std::pair<Index, Index>> faces; ///< numbers in the file
 };
 
-/// Everything that a file says, in its order.
+/// All data of a file, in its order.
 struct Contents
 {
   std::optional<int> dimension;
   std::vector<double> points;
   std::vector<Range> faceRanges, cellRanges;
   std::vector<Index> offsets = { 0 }, nodes;
-  std::vector<std::array<Index, 2>> sides; ///< the cells of a face, from 0; -1: none
+  std::vector<std::array<Index, 2>> sides; ///< the cells of a face, from 0; -1 for none
   std::map<Index, std::pair<std::string, std::string>> names; ///< type and name by zone
   std::vector<PeriodicPair> periodic;
   Index declaredNodes = -1, declaredFaces = -1, cells = -1;
@@ -163,7 +163,7 @@ private:
     this->Cursor.closeSection(section, "the dimension");
   }
 
-  /// The order of the bytes: the first number is the character '<' or '>'.
+  /// The byte order: the first number is the character '<' or '>'.
   void readMachine(const FluentSection& section)
   {
     this->Cursor.expect('(', "the section of the machine");
@@ -172,7 +172,7 @@ private:
     this->Cursor.closeSection(section, "the section of the machine");
   }
 
-  /// Zone, first and last number, and further numbers, of which those that are missing are 0.
+  /// Zone, first and last number, and further numbers, which are 0 if missing.
   std::vector<Index> header(const FluentSection& section, const char* what, Range& range)
   {
     constexpr std::size_t needed = 3, most = 5;
@@ -260,7 +260,7 @@ private:
       }
       this->Found.cellRanges.push_back(range);
     }
-    if (this->Cursor.openBody()) // types of cells, which their faces show as well
+    if (this->Cursor.openBody()) // cell types, which also follow from the faces
     {
       const Index mixed = range.zone > 0 && numbers[4] == Mixed ? range.count : 0;
       for (Index i = 0; i < mixed; ++i)
@@ -374,7 +374,7 @@ private:
     this->Found.periodic.push_back(std::move(pair));
   }
 
-  /// (39 (number type name ...) ...), with a decimal number.
+  /// Reads (39 (number type name ...) ...), with a decimal number.
   void readZone(const FluentSection& section)
   {
     this->Cursor.expect('(', "a section of a zone");
@@ -410,7 +410,7 @@ private:
     if (highest != found.nodes.end() && *highest >= nodes)
     {
       this->Cursor.failHere(
-        "a face has node " + std::to_string(*highest + 1) + ", there are " + std::to_string(nodes));
+        "a face has node " + std::to_string(*highest + 1) + "; there are " + std::to_string(nodes));
     }
     this->checkCells();
   }
@@ -426,8 +426,8 @@ private:
     if (last == 0)
     {
       this->Cursor.failHere(found.sides.empty()
-          ? "the file has no faces: it is not a mesh of Fluent"
-          : "no face has a cell: it is a mesh of a surface. Save the mesh of the volume");
+          ? "the file has no faces: it is not a Fluent mesh"
+          : "no face has a cell: it is a surface mesh. Save the volume mesh");
     }
     found.cells = found.cells < 0 ? last : found.cells;
     if (found.cells > 2 * static_cast<Index>(found.sides.size()))
@@ -437,7 +437,7 @@ private:
     }
     if (last > found.cells) // the declaration follows the faces
     {
-      this->Cursor.failHere("a face has cell " + std::to_string(last) + ", the file declares " +
+      this->Cursor.failHere("a face has cell " + std::to_string(last) + "; the file declares " +
         std::to_string(found.cells));
     }
     for (const Range& range : found.cellRanges)
@@ -451,12 +451,12 @@ private:
   }
 
   FluentCursor Cursor;
-  Index Bytes; ///< of the file, which has fewer nodes than that
+  Index Bytes; ///< size of the file, a bound on the number of nodes
   Contents Found;
   std::vector<Index> Sorted; ///< the nodes of a face
 };
 
-/// Orders the faces of a file as FoamMesh has them.
+/// Orders the faces of a file as in FoamMesh.
 class FluentArrangement
 {
 public:
@@ -538,7 +538,7 @@ private:
     }
   }
 
-  /// The place of a face by its number in the file; -1: nowhere.
+  /// The index of a face by its number in the file; -1 if there is none.
   Index placeOf(Index number) const
   {
     for (const Range& range : this->Found.faceRanges)
@@ -558,7 +558,7 @@ private:
     return found == this->Zones.end() ? nullptr : &*found;
   }
 
-  /// Gives the faces of two periodic zones the order of their list.
+  /// Sorts the faces of two periodic zones in the order of their list.
   void orderPair(const PeriodicPair& pair)
   {
     FaceZone *one = this->zone(pair.zone), *other = this->zone(pair.shadow);
@@ -586,11 +586,11 @@ private:
     {
       this->Made.warnings.push_back("the periodic zones " + this->nameOf(pair.zone) + " and " +
         this->nameOf(pair.shadow) +
-        " are read as other boundaries: the list of their faces does not fit them");
+        " are read as ordinary boundaries: the list of their faces does not fit them");
     }
   }
 
-  /// Appends a face. Fluent's normals point to the first cell, in the plane it is on the left.
+  /// Appends a face. Fluent's normals point to the first cell; in the plane it is on the left.
   void addFace(Index face)
   {
     FoamMesh& mesh = this->Made.mesh;
@@ -687,7 +687,7 @@ private:
   std::map<Index, Index> Partners;
 };
 
-/// Twice the area of all polygons together, negative if most run clockwise.
+/// Twice the total signed area of all polygons, negative if most run clockwise.
 double orientation(const FoamMesh& mesh, const FoamCells& cells)
 {
   double sum = 0.0;
@@ -731,9 +731,9 @@ FoamCells polygonsOf(const FoamMesh& mesh)
     };
     if (edges.size() < 3)
     {
-      throw open(" has " + std::to_string(edges.size()) + " faces, at least 3 are needed");
+      throw open(" has " + std::to_string(edges.size()) + " faces; at least 3 are needed");
     }
-    for (std::size_t i = 0; i < edges.size(); ++i) // each edge behind the one before
+    for (std::size_t i = 0; i < edges.size(); ++i) // each edge after its predecessor
     {
       cells.connectivity.push_back(edges[i][0]);
       const Index end = edges[i][1];

@@ -42,8 +42,8 @@ FoamPiece wholeOfProcessors(const std::vector<std::string>& folders)
   }
   if (!problem.empty())
   {
-    whole.warnings.push_back("the meshes of the processors are joined along their patches, in an "
-                             "order of its own: the addresses of decomposePar do not fit them (" +
+    whole.warnings.push_back("the meshes of the processors are joined along their patches, in a "
+                             "different order: the addresses of decomposePar do not fit them (" +
       problem + ")");
   }
   whole.folders = folders;
@@ -115,7 +115,7 @@ FoamPiece pieceByAddresses(const std::vector<std::string>& folders, int piece, i
   return result;
 }
 
-/// The same from the numbers that the join of all processors gives.
+/// The same from the numbers after joining all processors.
 FoamPiece pieceBySeams(const std::vector<std::string>& folders, int piece, int pieces)
 {
   FoamPiece result;
@@ -160,7 +160,7 @@ FoamPiece pieceOfProcessors(const std::vector<std::string>& folders, int piece, 
   return result;
 }
 
-/// Finds the cells of a mesh that was put together or divided.
+/// Finds the cells of a mesh that was joined or divided.
 void finish(FoamPiece& piece)
 {
   try
@@ -220,7 +220,7 @@ FoamPiece readFoamCase(const FoamRequest& request)
   if (!moving.empty())
   {
     result.warnings.push_back(
-      "the points are those of the constant mesh: there are others in " + moving.back());
+      "the points are from the constant mesh: there are other points in " + moving.back());
   }
   return result;
 }

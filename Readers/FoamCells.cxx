@@ -30,13 +30,13 @@ public:
 
   Index size() const { return this->Size; }
   Index number() const { return this->Number; }
-  /// The point i, counted around the face, at most twice; the first is that of the file.
+  /// The point i, counted around the face, at most twice; the first is the first in the file.
   Index point(Index i) const
   {
     const Index turned = i < this->Size ? i : i - this->Size;
     return this->First[this->Reversed && turned > 0 ? this->Size - turned : turned];
   }
-  /// Where a point is in the face; -1: nowhere.
+  /// The index of a point in the face; -1 if it is not there.
   Index find(Index point) const
   {
     for (Index i = 0; i < this->Size; ++i)
@@ -54,7 +54,7 @@ public:
     std::sort(points.begin(), points.end());
     return points;
   }
-  /// Whether the face has exactly these points in this order, from any one on.
+  /// Whether the face has exactly these points in this cyclic order.
   bool is(std::initializer_list<Index> points) const
   {
     const Index begin =
@@ -73,7 +73,7 @@ private:
 
 using OutwardFaces = std::vector<OutwardFace>;
 
-/// Whether all faces but one are these, in any order.
+/// Whether all faces except one are these, in any order.
 bool matches(const OutwardFaces& faces, const OutwardFace& base,
   std::initializer_list<std::initializer_list<Index>> expected)
 {
@@ -87,7 +87,7 @@ bool matches(const OutwardFaces& faces, const OutwardFace& base,
       });
 }
 
-/// The point after b in the face, not the base, that runs from a to b; -1 without one.
+/// The point after b in the face, other than the base, that runs from a to b; -1 if there is none.
 Index pointAfter(const OutwardFaces& faces, const OutwardFace& base, Index a, Index b)
 {
   for (const OutwardFace& face : faces)
@@ -163,7 +163,7 @@ bool addPrism(const OutwardFaces& faces, const OutwardFace& base, std::vector<In
   return true;
 }
 
-/// VTK's type of a cell, whose points are appended; polyhedra append nothing.
+/// The VTK type of a cell, whose points are appended; for polyhedra nothing is appended.
 unsigned char linearCell(const OutwardFaces& faces, std::vector<Index>& points)
 {
   constexpr std::size_t Tetrahedron = 4, PyramidOrWedge = 5, Hexahedron = 6;
@@ -201,7 +201,7 @@ unsigned char linearCell(const OutwardFaces& faces, std::vector<Index>& points)
   return FilePolyhedron;
 }
 
-/// Finds the errors of polyhedra, with arrays that are kept from one to the next.
+/// Finds the errors of polyhedra, with arrays that are reused from one to the next.
 class PolyhedronCheck
 {
 public:
@@ -258,7 +258,7 @@ private:
 
   void checkDuplicates(const OutwardFaces& faces, Index cell)
   {
-    // a check sum of the points, in which their order does not matter; size; face
+    // a checksum of the points, independent of their order; size; face
     std::vector<Edge>& keys = this->Edges;
     keys.clear();
     for (std::size_t i = 0; i < faces.size(); ++i)
@@ -286,7 +286,7 @@ private:
   std::vector<Edge> Edges;
 };
 
-/// The faces of a nonOverlapPatch that a cyclicACMI patch has as well, which a cell has once.
+/// The faces shared by a nonOverlapPatch and a cyclicACMI patch, which a cell has only once.
 std::vector<char> repeatedFaces(const FoamMesh& mesh)
 {
   std::vector<char> repeated;
@@ -345,7 +345,7 @@ FoamCells cellsOf(const FoamMesh& mesh)
     {
       throw FoamDefect{ "owner", faces.empty() ? 0 : faces.back().number(),
         "cell " + std::to_string(cell) + " has " + std::to_string(faces.size()) +
-          " faces, at least 4 are needed" };
+          " faces; at least 4 are needed" };
     }
     const unsigned char type = linearCell(faces, cells.connectivity);
     if (type == FilePolyhedron)

@@ -13,7 +13,7 @@ namespace tautline
 {
 namespace
 {
-/// A vertex at the mean of each cell's faces' points.
+/// A vertex for each cell, at the mean of its faces' points.
 MeshFile cellCentres(const FoamMesh& mesh, const FoamCellFaces& cellFaces)
 {
   MeshFile centres;
@@ -108,7 +108,7 @@ private:
     mesh.facePoints.insert(mesh.facePoints.end(), begin, end);
     if (reversed)
     {
-      // the first point stays, but of a face in the plane, which has two
+      // the first point stays, except for a face in the plane, which has two
       const std::ptrdiff_t kept = end - begin == 2 ? 0 : 1;
       std::reverse(mesh.facePoints.end() - (end - begin) + kept, mesh.facePoints.end());
     }
@@ -176,8 +176,8 @@ private:
     this->Result.mesh.patches.push_back(std::move(patch));
   }
 
-  /// The points of the faces, in the order of the whole mesh; of the first piece those without a
-  /// face, too.
+  /// The points of the faces, in the order of the whole mesh; for the first piece also points
+  /// without a face.
   void addPoints()
   {
     FoamMesh& mesh = this->Result.mesh;
@@ -209,7 +209,7 @@ private:
   const FoamMesh& Mesh;
   const std::vector<int>& PieceOfCell;
   int Piece;
-  std::vector<Index> CellNumbers, FaceNumbers, PointNumbers; ///< in the piece; -1: not in it
+  std::vector<Index> CellNumbers, FaceNumbers, PointNumbers; ///< in the piece; -1 if not in it
   FoamPiece Result;
 };
 }

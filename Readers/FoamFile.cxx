@@ -16,8 +16,8 @@ namespace
 {
 constexpr const char* Compressed = ".gz";
 constexpr std::size_t LeastFace = 7;  // bytes of "3(0 1 2)" without one separator
-constexpr std::size_t LeastPoint = 7; // of "(0 0 0)"
-constexpr int Corners = 3;            // of the smallest face
+constexpr std::size_t LeastPoint = 7; // bytes of "(0 0 0)"
+constexpr int Corners = 3;            // number of corners of the smallest face
 
 bool isBlank(char c)
 {
@@ -41,7 +41,7 @@ bool isPunctuation(char c)
   return c == '(' || c == ')' || c == '{' || c == '}' || c == ';' || c == '"';
 }
 
-/// How many bytes a value of a type of lists has; 0 for types whose values are text.
+/// The number of bytes per value for a list type; 0 for types with text values.
 std::size_t valueBytes(const std::string& type, const FoamHeader& header)
 {
   const auto scalar = static_cast<std::size_t>(header.scalarBytes);
@@ -222,7 +222,8 @@ std::string FoamCursor::token(const char* what)
       name += *at;
     }
     this->fail("'" + name + "' is a " + (*begin == '#' ? "directive" : "macro") +
-      ", which only OpenFOAM evaluates: write its value instead, as foamDictionary -expand does");
+      ", which only OpenFOAM evaluates: write its value instead, for example with foamDictionary "
+      "-expand");
   }
   const char* at = begin;
   while (at < this->end() && !isBlank(*at) && !isPunctuation(*at) &&
@@ -373,7 +374,7 @@ void FoamCursor::skipValue()
       dictionary |= begins && c == '{';
       if (closes && depth == 0)
       {
-        this->fail("the value before has no ';'");
+        this->fail("the previous value has no ';'");
       }
       this->moveTo(this->place() + 1);
       depth += closes ? -1 : c == '(' || c == '{' ? 1 : 0;
@@ -452,7 +453,7 @@ Index FoamCursor::count(const char* what, Index most)
   if (found > most)
   {
     this->failAt(begin,
-      std::string("there are ") + std::to_string(found) + " entries of " + what + ", at most " +
+      std::string("there are ") + std::to_string(found) + " entries of " + what + "; at most " +
         std::to_string(most) + " are possible");
   }
   return found;
@@ -696,7 +697,7 @@ void FoamCursor::checkFace(Index face, const std::vector<Index>& offsets,
   };
   if (end - begin < Corners)
   {
-    refuse("has " + std::to_string(end - begin) + " points, at least 3 are needed");
+    refuse("has " + std::to_string(end - begin) + " points; at least 3 are needed");
   }
   const auto repeats = [&](Index point)
   { refuse("has point " + std::to_string(point) + " more than once"); };
@@ -731,7 +732,7 @@ void FoamCursor::compactFaces(
   Index pointCount, std::vector<Index>& offsets, std::vector<Index>& points)
 {
   const auto most = static_cast<Index>(this->bytesLeft());
-  // the complaint is about a face, which is an entry of the first list
+  // the complaint refers to a face, which is an entry of the first list
   const char* begin = this->place();
   offsets = this->labels("the start of a face", 0, most, most);
   const std::string ordered = "the starts of the faces do not ascend from 0";
@@ -751,7 +752,7 @@ void FoamCursor::compactFaces(
   if (static_cast<Index>(points.size()) != offsets.back())
   {
     this->failAt(second,
-      "there are " + std::to_string(points.size()) + " points of faces, the faces need " +
+      "there are " + std::to_string(points.size()) + " points of faces; the faces need " +
         std::to_string(offsets.back()));
   }
   const auto faces = static_cast<Index>(offsets.size()) - 1;

@@ -131,7 +131,7 @@ void addCellArrays(const FoamMesh& mesh, vtkUnstructuredGrid* grid)
   const auto faces = named<vtkIdTypeArray>("Face", cells);
   patches->FillValue(-1);
   faces->FillValue(-1);
-  // of the face f of a patch, if there are cells for them
+  // for face f of a patch, if there are cells for them
   const vtkIdType first = mesh.cells - mesh.numberOfInternalFaces();
   for (std::size_t i = 0; cells > mesh.cells && i < mesh.patches.size(); ++i)
   {
@@ -148,7 +148,7 @@ void addCellArrays(const FoamMesh& mesh, vtkUnstructuredGrid* grid)
   {
     const auto zones = named<vtkIntArray>("CellZone", cells);
     zones->FillValue(-1);
-    for (std::size_t i = mesh.cellZones.size(); i-- > 0;) // of several, the first holds
+    for (std::size_t i = mesh.cellZones.size(); i-- > 0;) // the first of several takes precedence
     {
       for (const Index cell : mesh.cellZones[i].members)
       {
@@ -159,7 +159,7 @@ void addCellArrays(const FoamMesh& mesh, vtkUnstructuredGrid* grid)
   }
 }
 
-/// Global ids: cells, then faces; the faces of a seam differ on its second side.
+/// Global ids: cells, then faces; the faces on the second side of a seam get different ids.
 void addGlobalIds(const FoamPiece& piece, vtkUnstructuredGrid* grid)
 {
   const FoamMesh& mesh = piece.mesh;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file FoamFileAdapter.h
- * @brief From a mesh of OpenFOAM to VTK; the arrays are those of vtkFoamMeshReader.
- * Internal: not installed.
+ * @brief Converts a mesh of OpenFOAM to VTK, with the arrays of vtkFoamMeshReader. Internal: not
+ * installed.
  */
 #ifndef tautline_FoamFileAdapter_h
 #define tautline_FoamFileAdapter_h
@@ -18,10 +18,10 @@ namespace tautline
 /// The field array (strings) with the directories polyMesh whose points a mesh has.
 constexpr const char* FoamCaseArray = "FoamCase";
 
-/// Number, name, type and size of each patch, a line each.
+/// Number, name, type and size of each patch, one line each.
 std::string patchList(const FoamMesh& mesh);
 
-/// @param patchFaces whether the faces of the patches are cells behind those of the volume
+/// @param patchFaces whether the faces of the patches become cells after the volume cells
 TAUTLINEREADERS_EXPORT void toGrid(FoamPiece piece, bool patchFaces, vtkUnstructuredGrid* grid);
 }
 #endif

@@ -56,7 +56,7 @@ std::vector<std::string> namesIn(const fs::path& folder)
   return names;
 }
 
-/// The number of a directory of a processor; -1: it is none.
+/// The number of a processor directory; -1 for other directories.
 int processorNumber(const std::string& name)
 {
   const std::string prefix = ProcessorFolder;
@@ -67,7 +67,7 @@ int processorNumber(const std::string& name)
                                                                                        : -1;
 }
 
-/// The number of processors with a directory; throws if one between them is missing.
+/// The number of processors with a directory; throws if one in between is missing.
 int countProcessors(const std::string& name, const fs::path& folder)
 {
   const std::string prefix = ProcessorFolder;
@@ -176,7 +176,7 @@ FoamLocation locateFoamCase(const FoamRequest& request)
   {
     throw FileError(request.name + ": there is no mesh: " + (whole / "faces").string() +
       (automatic ? " and processor0 are missing" : " is missing") +
-      "; blockMesh or another mesher makes it");
+      "; run blockMesh or another mesher first");
   }
   for (int i = 0; i < processors; ++i)
   {

@@ -49,7 +49,7 @@ void readFaces(const std::string& folder, FoamMesh& mesh)
   cursor.expectEnd("its list of faces");
 }
 
-/// Reads owner and neighbour, which older files fill with -1 for the faces of the boundary.
+/// Reads `owner` and `neighbour`; older files have -1 in `neighbour` for the faces of the boundary.
 void readCellsOfFaces(const std::string& folder, FoamMesh& mesh)
 {
   const auto faces = static_cast<Index>(mesh.faceOffsets.size()) - 1;
@@ -84,9 +84,9 @@ void readCellsOfFaces(const std::string& folder, FoamMesh& mesh)
       failInFile(folder, mesh.numberOfPoints(),
         { "neighbour", static_cast<Index>(i),
           mesh.neighbor[i] < 0
-            ? "face " + std::to_string(i) + " has no neighbour, and later ones have one"
+            ? "face " + std::to_string(i) + " has no neighbor, but later ones have one"
             : "face " + std::to_string(i) + " has owner " + std::to_string(mesh.owner[i]) +
-              " and neighbour " + std::to_string(mesh.neighbor[i]) +
+              " and neighbor " + std::to_string(mesh.neighbor[i]) +
               ": the owner of an internal face is the lower cell" });
     }
     last = std::max(last, mesh.neighbor[i]);
@@ -176,14 +176,14 @@ void readBoundary(const std::string& folder, FoamMesh& mesh)
       {
         cursor.failAt(begin,
           "patch " + name + " starts at face " + std::to_string(patch.start) +
-            ", it must start at " + std::to_string(next) +
-            (next == mesh.numberOfInternalFaces() ? ", the first face without a neighbour"
-                                                  : ", where the patch before ends"));
+            "; it must start at " + std::to_string(next) +
+            (next == mesh.numberOfInternalFaces() ? ", the first face without a neighbor"
+                                                  : ", where the previous patch ends"));
       }
       if (patch.size > mesh.numberOfFaces() - next)
       {
         cursor.failAt(begin,
-          "patch " + name + " ends at face " + std::to_string(next + patch.size) + ", there are " +
+          "patch " + name + " ends at face " + std::to_string(next + patch.size) + "; there are " +
             std::to_string(mesh.numberOfFaces()) + " faces");
       }
       patch.start = next; // empty patches may have any start
@@ -193,12 +193,12 @@ void readBoundary(const std::string& folder, FoamMesh& mesh)
   cursor.expectEnd("its list of patches");
   if (next != mesh.numberOfFaces())
   {
-    cursor.fail("the patches end at face " + std::to_string(next) + ", there are " +
+    cursor.fail("the patches end at face " + std::to_string(next) + "; there are " +
       std::to_string(mesh.numberOfFaces()) + " faces");
   }
 }
 
-/// Zones of a file that need not exist; `key` is the keyword of the list of their members.
+/// The zones of a file that may not exist; `key` is the keyword of the list of their members.
 std::vector<FoamZone> readZones(const std::string& name, const char* key, Index members)
 {
   std::vector<FoamZone> zones;

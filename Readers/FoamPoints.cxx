@@ -15,7 +15,7 @@ namespace tautline
 {
 namespace
 {
-/// The new bytes of a file of points.
+/// The new bytes of a points file.
 class PointsRewriter
 {
 public:
@@ -153,7 +153,7 @@ private:
   FoamCursor Cursor;
   const std::vector<double>& Points;
   FoamPointsContent Result;
-  const char* Kept = nullptr; ///< what is not yet in the result begins here
+  const char* Kept = nullptr; ///< start of the part that is not yet in the result
 };
 
 AtomicFile completeFile(const std::string& name, const char* bytes, std::size_t size)
@@ -164,7 +164,7 @@ AtomicFile completeFile(const std::string& name, const char* bytes, std::size_t 
   return file;
 }
 
-/// The name of the copy of a file of points.
+/// The name of the copy of a points file.
 std::string originalName(const std::string& name)
 {
   const auto [stem, ending] = splitExtension(name);

@@ -10,20 +10,20 @@
 
 namespace tautline
 {
-/// The new content of a file `points`, plain or compressed as the file is.
+/// The new content of a file `points`, plain or compressed like the file.
 struct FoamPointsContent
 {
   std::string name; ///< with .gz if it is compressed
   std::string bytes;
-  double rounding = 0.0; ///< the largest, by numbers of 4 bytes
+  double rounding = 0.0; ///< the largest, with 4-byte numbers
 };
 
 /**
- * @brief The content of the file `points` of a directory polyMesh with other coordinates, in its
- * format: text or binary, of the same width, compressed or not.
+ * @brief The content of the file `points` of a directory polyMesh with other coordinates, in the
+ * same format: text or binary, same width, compressed or not.
  *
- * Coordinates that are equal to those in the file stay as they are, with all other bytes. New ones
- * are in text the shortest numbers that read back the same.
+ * Unchanged coordinates keep their bytes, and so does the rest of the file. In text files, new
+ * coordinates are the shortest numbers that read back the same.
  *
  * Throws FileError if the number of points differs, or if a coordinate is not finite or too large
  * for numbers of 4 bytes.
@@ -32,12 +32,12 @@ TAUTLINEREADERS_EXPORT FoamPointsContent withFoamPoints(
   const std::string& folder, const std::vector<double>& points);
 
 /**
- * @brief Writes the points of a mesh into the files of its directories, all of them or none.
+ * @brief Writes the points of a mesh to the files of its directories, either all of them or none.
  *
- * @param numbers of each directory of processors, the number in the mesh of each of its points;
- * empty where the only directory has the points of the mesh
- * @param keepOriginal whether a file that is replaced is kept as points.orig, unless there is one
- * @param rounding the largest
+ * @param numbers for each processor directory, the number in the mesh of each of its points; empty
+ * if the only directory has the points of the mesh
+ * @param keepOriginal whether to keep a replaced file as points.orig, unless that exists
+ * @param rounding set to the largest rounding error
  * @return the names of the files
  */
 TAUTLINEREADERS_EXPORT std::vector<std::string> writeFoamPoints(

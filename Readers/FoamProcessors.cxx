@@ -16,7 +16,7 @@ namespace tautline
 {
 namespace
 {
-/// Of the diagonal of the points: by how much two sides of a seam may differ.
+/// The largest difference between the sides of a seam, as a fraction of the diagonal of the points.
 constexpr double SeamTolerance = 1e-6;
 
 /// The files of addresses, in the order of the members of FoamAddresses.
@@ -25,7 +25,7 @@ constexpr const char* AddressFiles[] = { "pointProcAddressing", "cellProcAddress
 
 std::vector<Index> readAddresses(const std::string& folder, const char* name)
 {
-  constexpr Index Most = Index{ 1 } << 43; // more than any mesh has; sums of some do not overflow
+  constexpr Index Most = Index{ 1 } << 43; // more than any mesh has; sums do not overflow
   const FoamContent content(folder + "/" + name);
   FoamCursor cursor(content.text());
   std::vector<Index> found =
@@ -42,7 +42,7 @@ std::vector<Index> mapped(const std::vector<Index>& members, const std::vector<I
   return result;
 }
 
-/// Appends a face of a mesh with other numbers of points; reversed, it starts at the same point.
+/// Appends a face of a mesh with renumbered points; a reversed face starts at the same point.
 void appendFace(const FoamMesh& from, Index face, const std::vector<Index>& pointNumbers,
   bool reversed, FoamMesh& to)
 {
@@ -59,7 +59,7 @@ void appendFace(const FoamMesh& from, Index face, const std::vector<Index>& poin
   to.faceOffsets.push_back(static_cast<Index>(to.facePoints.size()));
 }
 
-/// The mesh of the undecomposed case by the addresses of its parts.
+/// The mesh of the undecomposed case from the addresses of its parts.
 class Composition
 {
 public:
@@ -94,8 +94,8 @@ private:
     bool reversed = false;
   };
 
-  /// One more than the largest of non-negative numbers; -1 if there are others, or if the numbers
-  /// are larger than all of them together allow.
+  /// One more than the largest of nonnegative numbers; -1 if there are negative numbers, or if they
+  /// exceed the total count.
   template <class Get>
   Index range(const Get& get) const
   {
@@ -121,7 +121,7 @@ private:
         static_cast<Index>(each.addresses.faces.size()) != each.mesh.numberOfFaces() ||
         each.addresses.patches.size() != each.mesh.patches.size())
       {
-        return "the mesh in " + each.folder + " has other sizes than its addresses";
+        return "the mesh in " + each.folder + " does not have the sizes of its addresses";
       }
     }
     this->Points = this->range([](const FoamAddresses& a) -> auto& { return a.points; });
@@ -174,7 +174,7 @@ private:
     return {};
   }
 
-  /// The number of a patch that its faces have in the whole mesh; -1: they are internal.
+  /// The number of the faces' patch in the whole mesh; -1 if they are internal.
   int patchOf(const FoamProcessor& processor, std::size_t patch) const
   {
     const Index number = processor.addresses.patches[patch];
@@ -327,7 +327,7 @@ private:
   std::vector<Face> Faces;
 };
 
-/// Sets of points that are one point.
+/// Sets of merged points.
 class PointSets
 {
 public:
@@ -356,7 +356,7 @@ private:
   std::vector<Index> Parent;
 };
 
-/// The meshes of processors as one mesh.
+/// Joins the meshes of processors into one mesh.
 class Join
 {
 public:
@@ -418,7 +418,7 @@ private:
   struct Segment
   {
     std::size_t patch; ///< of the joined mesh
-    int first, second; ///< the order in it: both halves of a cyclic patch get the same
+    int first, second; ///< the order in it, the same for both halves of a cyclic patch
     int processor;
     const FoamPatch* part;
   };
@@ -516,7 +516,7 @@ private:
       {
         throw FileError(this->Processors[static_cast<std::size_t>(patch.processor)].folder +
           "/faces: face " + std::to_string(face) + " of patch " + patch.name + " and face " +
-          std::to_string(otherFace) + " on the other side have other points");
+          std::to_string(otherFace) + " on the other side have different points");
       }
       this->Faces.push_back({ this->globalCell(patch.processor, face),
         this->globalCell(patch.neighborProcessor, otherFace), patch.processor, face,
@@ -592,7 +592,7 @@ private:
     return number;
   }
 
-  /// The patch of the joined mesh with a name, made of a part of it if it is new.
+  /// The patch of the joined mesh with a given name, created from a part if it is new.
   std::size_t patchNamed(const std::string& name, const FoamPatch& part)
   {
     const auto found = std::find_if(this->Mesh.patches.begin(), this->Mesh.patches.end(),
@@ -686,7 +686,7 @@ private:
   bool Sewn;
   FoamMesh& Mesh;
   Index Points = 0;
-  std::vector<Index> FirstPoint; ///< of each processor
+  std::vector<Index> FirstPoint; ///< for each processor
   FoamNumbers Numbers;
   PointSets Sets{ 0 };
   std::vector<Face> Faces; ///< internal ones

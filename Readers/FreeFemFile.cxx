@@ -5,7 +5,7 @@ namespace tautline
 {
 namespace
 {
-/// Cells with a label each, numbered from 1.
+/// Reads cells with a label each, numbered from 1.
 void readCells(
   TextCursor& cursor, unsigned char type, Index count, MeshFile& mesh, std::vector<Index>& labels)
 {
@@ -34,9 +34,8 @@ MeshFile readFreeFem(const FileContent& file)
   const char* place = cursor.place();
   if (cursor.tokensInLine() != 3)
   {
-    cursor.fail(
-      "neither $MeshFormat (Gmsh) nor three numbers (FreeFem++: points, elements, boundary "
-      "elements): this is no .msh file that can be read");
+    cursor.fail("neither $MeshFormat (Gmsh) nor three numbers (FreeFem++: points, elements, "
+                "boundary elements): this is not a supported .msh file");
   }
   const Index points = cursor.count("number of points", 6);
   const Index elements = cursor.count("number of elements", 6);

@@ -33,12 +33,12 @@ void addEdge(Places& nodes, const LatticePoint& from, const LatticePoint& to, in
   }
 }
 
-/// A triangle or a square between corners `order` steps apart: corners, edges, and the same of the
-/// one inside, as Gmsh's documentation has it ("Node ordering").
+/// A triangle or a square between corners `order` steps apart: corners, edges, and recursively the
+/// inner one, as in Gmsh's documentation ("Node ordering").
 void addFace(Places& nodes, Places corners, int order)
 {
   const std::size_t count = corners.size();
-  const int smaller = count == 3 ? 3 : 2; // by so much is the one inside
+  const int smaller = count == 3 ? 3 : 2; // by this much is the inner one
   for (; order > 0; order -= smaller)
   {
     nodes.insert(nodes.end(), corners.begin(), corners.end());
@@ -66,7 +66,7 @@ void addFace(Places& nodes, Places corners, int order)
   }
 }
 
-/// What addFace() has inside its edges.
+/// The nodes of addFace() inside its edges.
 void addInsideOfFace(Places& nodes, const Places& corners, int order)
 {
   Places all;
@@ -75,13 +75,13 @@ void addInsideOfFace(Places& nodes, const Places& corners, int order)
     nodes.end(), all.begin() + static_cast<std::ptrdiff_t>(corners.size()) * order, all.end());
 }
 
-/// A shape of Gmsh: its corners in the order 1, and how edges and faces run between them.
+/// A shape of Gmsh: its corners for order 1, and its edges and faces between them.
 struct Solid
 {
   Places corners;
   std::vector<std::array<int, 2>> edges;
   std::vector<Corners> faces;
-  int smaller; ///< by so much is the order of the one inside less
+  int smaller; ///< decrease of the order of the inner shape
 };
 
 const Solid tetrahedron = { { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } },
@@ -99,7 +99,7 @@ const Solid prism = { { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 }, { 1,
   { { 0, 1 }, { 0, 2 }, { 0, 3 }, { 1, 2 }, { 1, 4 }, { 2, 5 }, { 3, 4 }, { 3, 5 }, { 4, 5 } },
   { { 0, 2, 1 }, { 3, 4, 5 }, { 0, 1, 4, 3 }, { 0, 3, 5, 2 }, { 1, 2, 5, 4 } }, 0 };
 
-/// The nodes inside a prism: those of each triangle's place along the axis, its ends first.
+/// The nodes inside a prism: for each interior triangle node, the nodes along the axis, ends first.
 void addInsideOfPrism(Places& nodes, int order)
 {
   Places triangle, line;
@@ -161,7 +161,7 @@ void addSolid(Places& nodes, const Solid& solid, int order, int low)
   }
 }
 
-/// The places of the nodes of Gmsh's complete elements, in Gmsh's order.
+/// The positions of the nodes of Gmsh's complete elements, in Gmsh's order.
 Places gmshPlaces(unsigned char linear, int order)
 {
   Places nodes;
@@ -190,7 +190,7 @@ Places gmshPlaces(unsigned char linear, int order)
   return nodes;
 }
 
-/// An element type of Gmsh and the cell that it is read as.
+/// An element type of Gmsh and the corresponding cell.
 struct KnownCell
 {
   int code;
@@ -211,17 +211,17 @@ constexpr KnownCell Known[] = { { 15, FileVertex, 1 }, { 1, FileLine, 2 }, { 2, 
   { 23, FileLagrangeTriangle, 15 }, { 37, FileLagrangeQuadrilateral, 25 },
   { 30, FileLagrangeTetrahedron, 35 }, { 93, FileLagrangeHexahedron, 125 },
   { 91, FileLagrangeWedge, 75 },
-  // Lagrange cells of first and second order, of other formats.
+  // Lagrange cells of first and second order, from other formats.
   { 1, FileLagrangeLine, 2 }, { 8, FileLagrangeLine, 3 }, { 2, FileLagrangeTriangle, 3 },
   { 9, FileLagrangeTriangle, 6 }, { 3, FileLagrangeQuadrilateral, 4 },
   { 10, FileLagrangeQuadrilateral, 9 }, { 4, FileLagrangeTetrahedron, 4 },
   { 11, FileLagrangeTetrahedron, 10 }, { 5, FileLagrangeHexahedron, 8 },
   { 12, FileLagrangeHexahedron, 27 }, { 6, FileLagrangeWedge, 6 }, { 13, FileLagrangeWedge, 18 } };
 
-/// A pyramid of 14 nodes: the node in its base, the last one, has no place in VTK's cell.
+/// A pyramid of 14 nodes: VTK's cell lacks the node in its base, the last one.
 constexpr int CompletePyramid = 14;
 
-/// Gmsh numbers the nodes of a pyramid's edges as its own list of edges goes.
+/// Gmsh numbers the nodes of a pyramid's edges in the order of its own list of edges.
 const std::vector<int> Pyramid13 = { 0, 1, 2, 3, 4, 5, 8, 10, 6, 7, 9, 11, 12 };
 
 GmshCell makeCell(const KnownCell& known)
@@ -245,7 +245,7 @@ GmshCell makeCell(const KnownCell& known)
   return cell;
 }
 
-/// The types of elements; the first of a code is the one that files are read with.
+/// The element types; files are read with the first one of a code.
 const std::vector<GmshCell>& cells()
 {
   static const std::vector<GmshCell> table = []
@@ -258,7 +258,7 @@ const std::vector<GmshCell>& cells()
   return table;
 }
 
-/// Elements that no cell of VTK has the polynomials of.
+/// Elements whose polynomials are not available in any VTK cell.
 struct UnknownCell
 {
   int code;

@@ -10,7 +10,7 @@ namespace
 {
 constexpr Index UnknownDimension = -1; // of a physical group
 
-/// Moves behind the line that ends a section.
+/// Moves past the line that ends a section.
 void expectEnd(TextCursor& cursor, const std::string& section)
 {
   const bool old = section == "NOD" || section == "ELM"; // of version 1
@@ -50,7 +50,7 @@ void skipSection(TextCursor& cursor, const std::string& section)
   cursor.moveTo(cursor.place() + found + 1 + end.size());
 }
 
-/// To the byte after the end of this line: where binary data begin.
+/// Moves to the byte after the end of this line, where binary data begin.
 void finishLine(TextCursor& cursor)
 {
   cursor.skipRestOfLine();
@@ -193,7 +193,7 @@ void readData(GmshInput& input, bool points)
   arrays.push_back(std::move(array));
 }
 
-/// Gives physical groups of a file without their dimensions that of their elements.
+/// Sets missing dimensions of physical groups to the dimensions of their elements.
 void findDimensions(GmshInput& input)
 {
   const auto groups = std::find_if(input.mesh.fieldArrays.begin(), input.mesh.fieldArrays.end(),
@@ -221,7 +221,7 @@ MeshFile finish(GmshInput& input)
   findDimensions(input);
   if (input.basesLeftOut > 0)
   {
-    input.mesh.warnings.push_back("VTK's quadratic pyramids have no node in their base: of " +
+    input.mesh.warnings.push_back("VTK's quadratic pyramids have no node in their base: in " +
       std::to_string(input.basesLeftOut) + " pyramids of 14 nodes it is left out.");
   }
   MeshFile mesh = std::move(input.mesh);
@@ -297,7 +297,7 @@ void readSections(GmshInput& input)
       {
         cursor.failAt(place,
           word + " comes before $" + section.substr(0, section.size() - 4) +
-            "s: move it behind that section");
+            "s: move it after that section");
       }
       readData(input, section == "NodeData");
     }
@@ -469,7 +469,8 @@ void readGmshElements1(GmshInput& input)
 MeshFile readGmsh(const std::string& name, bool lowerCells)
 {
   const FileContent file(name);
-  // values for a few nodes only make arrays larger than the file; nothing sensible makes them huge
+  // values for only a few nodes make arrays larger than the file, but no reasonable file makes them
+  // huge
   const std::size_t budget = 1048576 + 64 * static_cast<std::size_t>(file.end() - file.begin());
   GmshInput input{ TextCursor(file), false, {}, {}, {}, {}, {}, budget, 0.0, 0 };
   if (!input.cursor.skipToToken())

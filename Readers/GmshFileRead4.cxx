@@ -7,7 +7,7 @@ namespace tautline
 {
 namespace
 {
-/// From this version on, blocks begin with the dimension and list all numbers before the points.
+/// Since this version, blocks begin with the dimension and list all numbers before the points.
 constexpr double NewBlocks = 4.1;
 
 /// An unsigned number of 8 bytes, or text.
@@ -49,7 +49,7 @@ Index readNumber(GmshInput& input, const char* what)
   return input.version >= NewBlocks ? readSize(input, what) : readInt(input, what, 0, AnyHigh);
 }
 
-/// The entity that a block belongs to.
+/// The entity of a block.
 struct Entity
 {
   Index dimension, tag;
@@ -71,7 +71,7 @@ Entity readEntity(GmshInput& input)
   return entity;
 }
 
-/// The smallest and the largest number, which are not used.
+/// Reads the smallest and the largest number, which are not used.
 void skipRange(GmshInput& input, const char* what)
 {
   if (input.version >= NewBlocks)

@@ -24,7 +24,7 @@ struct WrittenEntity
   std::array<double, 3> low, high;
 };
 
-/// The entities of a mesh and that of each cell.
+/// The entities of a mesh and the entity of each cell.
 struct Entities
 {
   std::vector<WrittenEntity> list; ///< by dimension, then tag
@@ -58,7 +58,8 @@ void extend(WrittenEntity& entity, const MeshFile& mesh, std::size_t cell)
   }
 }
 
-/// Each (dimension, Entity, Reference) is an entity; it keeps its tag unless that is taken.
+/// Each (dimension, Entity, Reference) is an entity; it keeps its tag unless the tag is already in
+/// use.
 Entities findEntities(const MeshFile& mesh)
 {
   const MeshArray* tags = findArray(mesh.cellArrays, "Entity");
@@ -231,7 +232,7 @@ Index nodesOf(const MeshFile& mesh, std::size_t cell)
   return mesh.offsets[cell + 1] - mesh.offsets[cell];
 }
 
-/// Ends of the runs of cells of one type and entity.
+/// The ends of the runs of cells of one type and entity.
 std::vector<std::size_t> findBlocks(const MeshFile& mesh, const Entities& entities)
 {
   std::vector<std::size_t> ends;
@@ -312,7 +313,8 @@ void refuseUnknown(const MeshFile& mesh, const std::string& name)
       throw FileError(name + ": Gmsh files cannot hold " + cellPlural(type) + " (cell " +
         std::to_string(cell) + ")" +
         (curved ? " of " + std::to_string(nodesOf(mesh, cell)) +
-              " nodes: those of orders 1 to 4, the same along all axes, are written; write .vtu"
+              " nodes: only cells of orders 1 to 4, the same along all axes, are supported; write "
+              ".vtu"
                 : std::string("; run Triangulate first")));
     }
   }

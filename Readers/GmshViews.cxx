@@ -11,7 +11,7 @@ namespace tautline
 {
 namespace
 {
-/// The letter of an element in the name of its list, the number of its corners.
+/// The letter of an element in the name of its list, and the number of its corners.
 struct ViewCell
 {
   int dimension;
@@ -29,7 +29,7 @@ const ViewCell& viewCell(unsigned char type)
     [=](const ViewCell& c) { return c.dimension == dimension && c.corners == corners; });
 }
 
-/// What a view shows of an array: all components, or one where Gmsh has no name for their number.
+/// The part of an array in a view: all components, or one if Gmsh has no name for their number.
 struct View
 {
   const MeshArray& array;
@@ -40,8 +40,8 @@ struct View
   char letter() const { return this->count == 1 ? 'S' : this->count == 3 ? 'V' : 'T'; }
 };
 
-/// Adds an element with its values, unless one of them is not finite, which Gmsh cannot read: then
-/// nothing is added, and the result is false.
+/// Adds an element with its values. If a value is not finite, which Gmsh cannot read, nothing is
+/// added and the result is false.
 bool writeElement(TextOutput& out, const MeshFile& mesh, const View& view, std::size_t cell)
 {
   const unsigned char type = linearType(mesh.cellTypes[cell]);
@@ -100,7 +100,8 @@ void writeView(TextOutput& out, const MeshFile& mesh, const View& view, std::str
   if (omitted > 0 && warnings)
   {
     warnings->push_back("view \"" + name + "\": " + std::to_string(omitted) + " of " +
-      std::to_string(cells) + " elements are left out, as Gmsh cannot read values that are not " +
+      std::to_string(cells) +
+      " elements are left out, because Gmsh cannot read values that are not " +
       "finite (the first is cell " + std::to_string(first) + ")");
   }
 }

@@ -42,7 +42,7 @@ std::string gunzipped(const FileContent& packed)
     {
       const std::size_t more = std::max(Step, size / 2);
       requireMemory(static_cast<double>(size + more), "the content of " + packed.name(),
-        "the file expands without end: is it damaged?");
+        "the file expands endlessly: is it damaged?");
       bytes.resize(size + more);
     }
     constexpr std::size_t Most = std::numeric_limits<uInt>::max();

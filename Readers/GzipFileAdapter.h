@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file GzipFileAdapter.h
- * @brief Files compressed by gzip, through the zlib that VTK has.
- * Internal: not installed.
+ * @brief Reads and writes files compressed with gzip, using VTK's zlib. Internal: not installed.
  */
 #ifndef tautline_GzipFileAdapter_h
 #define tautline_GzipFileAdapter_h
@@ -11,8 +10,8 @@
 
 namespace tautline
 {
-/// The content of a compressed file; of several members one after the other. Throws FileError where
-/// it is damaged or truncated.
+/// The content of a compressed file; several members are concatenated. Throws FileError if it is
+/// damaged or truncated.
 std::string gunzipped(const FileContent& packed);
 
 /// The same bytes compressed.

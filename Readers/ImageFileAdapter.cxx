@@ -36,7 +36,7 @@ constexpr std::string_view PngStart("\x89PNG\r\n\x1a\n", 8);
   throw FileError(name + ": the image cannot be read: " + problem);
 }
 
-/// VTK's reader of the format with these first bytes; null if there is none.
+/// VTK's reader for the format with these first bytes; null if there is none.
 vtkSmartPointer<vtkImageReader2> makeReader(std::string_view start)
 {
   const auto begins = [start](std::string_view with)
@@ -65,7 +65,7 @@ vtkSmartPointer<vtkImageReader2> makeReader(std::string_view start)
   return nullptr;
 }
 
-/// The bytes of a file; what is read beyond the end is an error.
+/// The bytes of a file; reading beyond the end is an error.
 class ImageBytes
 {
 public:
@@ -84,7 +84,7 @@ public:
     }
     return this->Content.substr(at, count);
   }
-  /// An unsigned number of some bytes.
+  /// An unsigned number of several bytes.
   std::size_t number(std::size_t at, std::size_t count, bool bigEndian) const
   {
     const std::string_view bytes = this->part(at, count);
@@ -101,11 +101,11 @@ private:
   std::string_view Content;
 };
 
-/// Throws unless all chunks of a PNG file are there, undamaged: VTK's reader crashes on others,
-/// since it returns from the function to which libpng jumps after an error.
+/// Throws unless all chunks of a PNG file are complete and undamaged: VTK's reader crashes
+/// otherwise, because it returns from the function to which libpng jumps after an error.
 void checkPng(const ImageBytes& image)
 {
-  // a chunk: 4 bytes length, 4 bytes name, data, 4 bytes check sum of name and data
+  // a chunk: 4 bytes length, 4 bytes name, data, 4 bytes checksum of name and data
   bool data = false;
   for (std::size_t at = PngStart.size();;)
   {
@@ -115,7 +115,7 @@ void checkPng(const ImageBytes& image)
       crc32(0, reinterpret_cast<const Bytef*>(named.data()), static_cast<uInt>(named.size()));
     if (image.number(at + 8 + length, 4, true) != sum)
     {
-      image.fail("the check sum of a chunk is wrong: the file is damaged");
+      image.fail("the checksum of a chunk is wrong: the file is damaged");
     }
     data = data || named.substr(0, 4) == "IDAT";
     if (named.substr(0, 4) == "IEND")
@@ -130,7 +130,7 @@ void checkPng(const ImageBytes& image)
   }
 }
 
-/// A tag of a TIFF file that decides on how the pixels are stored.
+/// A tag of a TIFF file that determines the storage of the pixels.
 struct TiffTag
 {
   std::size_t tag, missing; ///< the value of a missing tag
@@ -138,7 +138,7 @@ struct TiffTag
   std::vector<std::size_t> allowed;
 };
 
-/// Throws unless VTK's reader reads this kind of TIFF file correctly, or notices what is wrong.
+/// Throws unless VTK's reader reads this kind of TIFF file correctly or detects the error.
 void checkTiff(const ImageBytes& image)
 {
   enum : std::size_t
@@ -198,19 +198,18 @@ void checkTiff(const ImageBytes& image)
   }
 }
 
-/// Where the pixels of a BMP file begin: VTK would take the end of the file for their end.
+/// The start of the pixels of a BMP file: VTK would treat the end of the file as their end.
 std::size_t checkBmp(const ImageBytes& image)
 {
   constexpr std::size_t longInfo = 40;
   if (image.number(14, 4, false) == longInfo && image.number(30, 4, false) != 0)
   {
-    image.fail("only BMP files that are not compressed can be read");
+    image.fail("only uncompressed BMP files are supported");
   }
   return image.number(10, 4, false);
 }
 
-/// Throws unless a PNM file has all its numbers and, of an image of a size that is allowed, as many
-/// bytes.
+/// Throws unless a PNM file has all its numbers and, for a permitted image size, enough bytes.
 void checkPnm(const FileContent& file)
 {
   TextCursor cursor(file, '#');
@@ -251,7 +250,7 @@ void keepMessage(vtkObject*, unsigned long, void* kept, void* message)
   }
 }
 
-/// While it exists, VTK reports errors; else observers get none where messages are switched off.
+/// While it exists, VTK reports errors; otherwise observers get none if messages are switched off.
 class Reporting
 {
 public:
@@ -264,7 +263,7 @@ private:
   const int Before = vtkObject::GetGlobalWarningDisplay();
 };
 
-/// Lets a reader work; throws if it reports anything.
+/// Runs a reader; throws if it reports anything.
 void expectSilent(
   vtkImageReader2* reader, const std::string& name, const std::function<void()>& work)
 {
@@ -332,7 +331,7 @@ vtkSmartPointer<vtkImageReader2> openImage(const std::string& name)
   {
     bmp->SetHeaderSize(checkBmp(image));
   }
-  // (That of PNM files takes none with a blank or a comment after P5.)
+  // (The PNM reader rejects files with a blank or a comment after P5.)
   if (!vtkPNMReader::SafeDownCast(reader) && !reader->CanReadFile(name.c_str()))
   {
     image.fail("its header is damaged");
@@ -350,7 +349,7 @@ vtkSmartPointer<vtkImageReader2> openImage(const std::string& name)
   }
   if (vtkJPEGReader::SafeDownCast(reader) && reader->GetNumberOfScalarComponents() > 3)
   {
-    image.fail("only JPEG of 1 or 3 components can be read");
+    image.fail("only JPEG with 1 or 3 components is supported");
   }
   return reader;
 }
@@ -364,7 +363,7 @@ vtkSmartPointer<vtkImageData> readImage(const std::string& name)
   {
     return reader->GetOutput();
   }
-  // VTK has the first row of a TIFF file at y = 0, and that of other formats at the top.
+  // VTK puts the first row of a TIFF file at y = 0, and the first row of other formats at the top.
   vtkNew<vtkImageFlip> flip;
   flip->SetInputData(reader->GetOutput());
   flip->SetFilteredAxis(1);

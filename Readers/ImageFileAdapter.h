@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ImageFileAdapter.h
- * @brief An image file as vtkImageData, by VTK's reader of its format.
+ * @brief Reads an image file as vtkImageData, using VTK's reader for its format.
  *
- * The first bytes decide on the format, not the ending of the name. Whatever VTK's reader reports
- * is an error. What it does not notice is checked before: PNG files that are cut or damaged, on
- * which it crashes, kinds of TIFF files of which it returns arbitrary values, RLE in BMP files and
- * where their pixels begin, and numbers in PNM files, which it would search for beyond the end.
+ * The first bytes determine the format, not the file name extension. All messages of VTK's reader
+ * are errors. Problems that it does not detect are checked before: truncated or damaged PNG files,
+ * on which it crashes, kinds of TIFF files for which it returns arbitrary values, RLE and the start
+ * of the pixels in BMP files, and numbers in PNM files, which it would search for beyond the end.
  *
  * | format | first bytes | read |
  * |---|---|---|
- * | PNG | 89 P N G 0D 0A 1A 0A | all; the check sums of all chunks are compared |
- * | JPEG | FF D8 FF | grey or YCbCr |
+ * | PNG | 89 P N G 0D 0A 1A 0A | all; the checksums of all chunks are compared |
+ * | JPEG | FF D8 FF | gray or YCbCr |
  * | TIFF | I I 2A 00, M M 00 2A | one page, 8 or 16 bits; not compressed, LZW, PackBits |
  * | BMP | B M | 8 or 24 bits per pixel, not compressed |
  * | PGM, PPM | P5, P6 | binary, values up to 255 |
@@ -30,21 +30,21 @@ class vtkImageReader2;
 
 namespace tautline
 {
-/// The formats in words, for messages.
+/// The names of the formats, for messages.
 constexpr const char* ImageFormats = "PNG, JPEG, TIFF, BMP, binary PGM and PPM";
 
-/// Pixels an image may have; a header that announces more is an error.
+/// Maximum number of pixels of an image; a header that announces more is an error.
 constexpr vtkIdType MaxPixels = 100'000'000;
 
-/// Whether a file begins as one of the formats does; false for what cannot be opened and for what
-/// is no regular file.
+/// Whether a file begins like one of the formats; false if it cannot be opened or is not a regular
+/// file.
 bool isImageFile(const std::string& name);
 
 /**
- * @brief VTK's reader of an image, with the extent known and no pixels read.
+ * @brief VTK's reader for an image, with a known extent before any pixels are read.
  *
- * Throws FileError, "file: problem", for a file of another format or kind, for one whose header is
- * damaged, and for more than MaxPixels pixels.
+ * Throws FileError, "file: problem", for a file of another format or kind, for a damaged header,
+ * and for more than MaxPixels pixels.
  */
 vtkSmartPointer<vtkImageReader2> openImage(const std::string& name);
 

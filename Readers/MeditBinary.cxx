@@ -24,7 +24,7 @@ public:
     const auto code = this->Cursor.binary<std::int32_t>("byte order");
     if (code != One && code != OneSwapped)
     {
-      this->fail("this is no binary file of Medit, which begins with the number 1");
+      this->fail("this is not a binary Medit file, which begins with the number 1");
     }
     this->Cursor.setSwap(code == OneSwapped);
     this->Version = this->word("version");
@@ -220,7 +220,7 @@ void readSection(MeditBytes& bytes, std::int32_t code, std::size_t end, MeditCon
   else if (isOtherCell(code) && end - bytes.at() > bytes.integerSize())
   {
     contents.warnings.push_back("the cells of the section with the code " + std::to_string(code) +
-      ", which are curved or have any number of points, are left out");
+      ", which are curved, polygons or polyhedra, are left out");
   }
 }
 }

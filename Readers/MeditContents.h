@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MeditContents.h
- * @brief The sections of a Medit file, between the parsers of its two forms and a mesh.
+ * @brief The sections of a Medit file, shared by the parsers of its two formats.
  */
 #ifndef tautline_MeditContents_h
 #define tautline_MeditContents_h
@@ -15,7 +15,7 @@
 
 namespace tautline
 {
-/// The sections of a file in their order. Numbers of points and cells begin with 0.
+/// The sections of a file in order. Numbers of points and cells begin with 0.
 struct MeditContents
 {
   int dimension = 0;               ///< 2 or 3; 0 before the section
@@ -27,11 +27,12 @@ struct MeditContents
   std::map<std::string, std::vector<Index>> lists;        ///< Corners, Ridges, ... as ids
   std::vector<std::string> warnings;
 
-  /// Whether a section of cells was read that is not empty.
+  /// Whether a nonempty section of cells was read.
   bool hasCells() const;
 };
 
-/// Medit's wedges are counter-clockwise from inside, VTK's from outside: exchanges the last six.
+/// Converts the last six nodes between Medit's wedges, whose triangles are counterclockwise as seen
+/// from inside, and VTK's, as seen from outside.
 void turnMeditWedge(std::vector<Index>& nodes, std::size_t end);
 
 /// Whether a section has cells that are not read: curved ones, polygons, polyhedra.

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MeditFile.h
- * @brief Medit's .mesh (text), .meshb (binary, versions 1 to 4, both byte orders) and .sol files.
+ * @brief Reads and writes Medit's .mesh (text), .meshb (binary, versions 1 to 4, both byte orders)
+ * and .sol files.
  *
- * Read are Vertices, Corners, RequiredVertices, Edges, Triangles, Quadrilaterals, Tetrahedra,
- * Hexahedra, Prisms, Pyramids, Ridges, RequiredEdges and RequiredTriangles; other sections are
- * skipped, with a warning if they have cells. A file without the keyword End is read, with a
- * warning, if its last section is as long as its count; a truncated section is an error.
+ * The supported sections are Vertices, Corners, RequiredVertices, Edges, Triangles, Quadrilaterals,
+ * Tetrahedra, Hexahedra, Prisms, Pyramids, Ridges, RequiredEdges and RequiredTriangles; other
+ * sections are skipped, with a warning if they have cells. A file without the keyword End is read,
+ * with a warning, if its last section is as long as its count; a truncated section is an error.
  *
  * Cells are ordered by type: tetrahedra, hexahedra, wedges, pyramids, triangles, quadrilaterals,
  * lines. The array names are listed in MeshFile.h; `Reference` is always there.
@@ -24,19 +25,21 @@ namespace tautline
 class FileContent;
 
 /**
- * @brief Reads a .mesh or .meshb with its .sol companion, or a .sol with its .mesh, else .meshb.
+ * @brief Reads a .mesh or .meshb with its .sol companion, or a .sol with its .mesh or otherwise its
+ * .meshb.
  *
  * A .sol beside both a .mesh and a .meshb belongs to the .mesh.
  */
 TAUTLINEREADERS_EXPORT MeshFile readMedit(const std::string& name, bool lowerCells);
 
 /**
- * @brief Writes a .meshb, or a .mesh and, when there are arrays a .mesh cannot hold, the .sol
+ * @brief Writes a .meshb, or a .mesh and, if there are arrays that a .mesh cannot hold, the .sol
  * beside it.
  *
- * A .sol from before is removed when the mesh needs none. Symmetric 3 x 3 matrices are written as
- * tensors, triples as vectors, other tuples component by component. A .meshb is written alone, in
- * version 2, or 3 or 4 where the file or its numbers are too large; see meditArraysLeftOut().
+ * An existing .sol is removed if the mesh needs none. Symmetric 3 x 3 matrices are written as
+ * tensors, triples as vectors, other tuples component by component. A .meshb is written without a
+ * .sol, in version 2, or in version 3 or 4 if the file or its numbers are too large; see
+ * meditArraysLeftOut().
  */
 TAUTLINEREADERS_EXPORT std::vector<std::string> writeMedit(
   const MeshFile& mesh, const std::string& name);
@@ -44,10 +47,11 @@ TAUTLINEREADERS_EXPORT std::vector<std::string> writeMedit(
 /// Whether a file begins like a .meshb, in either byte order.
 TAUTLINEREADERS_EXPORT bool isMeditBinary(const std::string& name);
 
-/// The names of the arrays that a .meshb does not hold, separated by commas.
+/// The names of the arrays that a .meshb cannot hold, separated by commas.
 TAUTLINEREADERS_EXPORT std::string meditArraysLeftOut(const MeshFile& mesh);
 
-/// Cells in the order of Medit's sections, with the section's name and its code in binary files.
+/// Cell types in the order of Medit's sections, with the section's name and its code in binary
+/// files.
 struct MeditSection
 {
   const char* name;
@@ -59,7 +63,7 @@ constexpr MeditSection MeditSections[] = { { "Tetrahedra", FileTetrahedron, 8 },
   { "Triangles", FileTriangle, 6 }, { "Quadrilaterals", FileQuadrilateral, 7 },
   { "Edges", FileLine, 5 } };
 
-/// Sections of numbers of points or cells, with their codes.
+/// Sections with numbers of points or cells, with their codes.
 struct MeditList
 {
   const char* name;
@@ -76,7 +80,7 @@ enum MeditCode
   MeditEnd = 54
 };
 
-/// Adds the fields of a .sol file to the mesh they belong to.
+/// Adds the fields of a .sol file to its mesh.
 void readMeditSolution(const FileContent& file, MeshFile& mesh);
 }
 #endif

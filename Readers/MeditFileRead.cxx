@@ -95,8 +95,8 @@ void readList(TextCursor& cursor, const std::string& section, MeditContents& con
 }
 
 /**
- * Everything up to the next keyword. At the end of the file, what was skipped must be a count and
- * as many records of one length.
+ * Skips everything up to the next keyword. At the end of the file, the skipped text must be a count
+ * and as many records of equal length.
  */
 void skipSection(TextCursor& cursor, const std::string& section, std::vector<std::string>& warnings)
 {
@@ -115,7 +115,7 @@ void skipSection(TextCursor& cursor, const std::string& section, std::vector<std
   if (count > 0 && isMeditCellSection(section))
   {
     warnings.push_back(std::to_string(count) + " cells of the section " + section +
-      ", which are curved or have any number of points, are left out");
+      ", which are curved, polygons or polyhedra, are left out");
   }
   const Index values = words - 1;
   const bool complete =
@@ -177,7 +177,7 @@ void readSections(TextCursor& cursor, MeditContents& contents)
     {
       cursor.failAt(place,
         "expected the name of a section, found '" + word.substr(0, 20) +
-          "' (is the count of the section before it right?)");
+          "' (is the count of the previous section right?)");
     }
   }
   warnOfMissingEnd("the file", cursor, contents.hasCells(), contents.warnings);
@@ -262,11 +262,11 @@ void readHeader(TextCursor& cursor)
   const std::string first = cursor.nextWord("MeshVersionFormatted");
   if (first == "MFEM")
   {
-    cursor.fail("this is a mesh of MFEM, which has the same ending: vtkMfemReader reads it");
+    cursor.fail("this is an MFEM mesh, which has the same extension: use vtkMfemReader");
   }
   if (first != "MeshVersionFormatted")
   {
-    cursor.fail("expected MeshVersionFormatted: this is no ASCII file of Medit");
+    cursor.fail("expected MeshVersionFormatted: this is not an ASCII Medit file");
   }
   cursor.nextInteger("version", 0, 4); // 0: bamg
 }
@@ -280,7 +280,7 @@ MeditContents readText(const FileContent& file)
   return contents;
 }
 
-/// One field of a .sol section.
+/// A field of a .sol section.
 struct Field
 {
   Index type; ///< 1 scalar, 2 vector, 3 symmetric tensor
@@ -290,7 +290,7 @@ struct Field
   }
 };
 
-/// The arrays of a section's fields: named in a comment that Tautline wrote, or Solution1, ...
+/// The arrays of a section's fields: named in a comment written by Tautline, or Solution1, ...
 struct SolutionArrays
 {
   std::vector<MeshArray> arrays;
@@ -376,7 +376,8 @@ std::vector<Field> readFields(TextCursor& cursor)
   return fields;
 }
 
-/// A section SolAt...: values for `count` tuples from `begin` on, in arrays of `tuples` tuples.
+/// Reads a section SolAt...: values for `count` tuples starting at `begin`, in arrays of `tuples`
+/// tuples.
 void readSolutionSection(TextCursor& cursor, const FileContent& file, const std::string& section,
   int dimension, Index count, std::size_t begin, std::size_t tuples, std::vector<MeshArray>& to)
 {
@@ -386,7 +387,7 @@ void readSolutionSection(TextCursor& cursor, const FileContent& file, const std:
   if (values != count)
   {
     cursor.failAt(place,
-      section + " has " + std::to_string(values) + " values, the mesh has " +
+      section + " has " + std::to_string(values) + " values; the mesh has " +
         std::to_string(count) + " of these");
   }
   const bool points = section == "SolAtVertices";

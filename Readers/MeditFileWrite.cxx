@@ -108,7 +108,7 @@ public:
   {
     this->Version ? this->wide(value, this->integerSize()) : void(this->Out << value << ' ');
   }
-  /// The last number of a record: the value i of an array, 0 without one.
+  /// The last number of a record: value i of an array, 0 if there is no array.
   void last(const MeshArray* array, std::size_t i)
   {
     const auto* values = array ? std::get_if<MeshArray::Integers>(&array->values) : nullptr;
@@ -151,7 +151,7 @@ private:
     bytes == sizeof(std::int64_t) ? this->Out.binary(static_cast<std::int64_t>(value))
                                   : this->Out.binary(static_cast<std::int32_t>(value));
   }
-  /// The code of a section and the place of the next one.
+  /// The code of a section and the position of the next one.
   void header(int code, std::size_t bytes)
   {
     constexpr std::size_t start = 2 * sizeof(std::int32_t);
@@ -181,7 +181,7 @@ void writeVertices(MeditOutput& out, const MeshFile& mesh, int dimension)
   }
 }
 
-/// Lower cells carry the marker of the boundary where there is one.
+/// Lower-dimensional cells have the marker of the boundary, if there is one.
 const MeshArray* referenceOf(const MeshFile& mesh, unsigned char type, int dimension)
 {
   const MeshArray* marker = findArray(mesh.cellArrays, "BoundaryMarker");
@@ -241,7 +241,7 @@ void writeList(
   }
 }
 
-/// The oldest version of binary files with room for the mesh.
+/// The oldest version of the binary format that can hold the mesh.
 std::int32_t versionFor(const MeshFile& mesh)
 {
   constexpr Index Most = std::numeric_limits<std::int32_t>::max();
@@ -272,7 +272,7 @@ bool symmetric(const MeshArray& array, int dimension)
       array.at(i + 5) == array.at(i + 7) &&
       (dimension == 3 ||
         (array.at(i + 2) == 0.0 && array.at(i + 5) == 0.0 && array.at(i + 8) == 0.0));
-    if (!good) // NaN too
+    if (!good) // also for NaN
     {
       return false;
     }
@@ -392,7 +392,7 @@ std::vector<Index> numbersTo(Index count)
   return all;
 }
 
-/// The file of the arrays, if there are any; see writeMedit.
+/// The file with the arrays, if there are any; see writeMedit.
 std::optional<TextOutput> solutionFile(const MeshFile& mesh, const std::string& name)
 {
   const int dimension = mesh.planar() ? 2 : 3;
@@ -425,7 +425,7 @@ std::vector<std::string> writeMedit(const MeshFile& mesh, const std::string& nam
   const bool binary = extension == "meshb";
   if (extension != "mesh" && !binary)
   {
-    throw FileError(name + ": .mesh is expected as the file's ending, or .meshb");
+    throw FileError(name + ": the file name extension must be .mesh or .meshb");
   }
   const Sections sections = sortCells(mesh, name);
   const int dimension = mesh.planar() ? 2 : 3;

@@ -48,7 +48,7 @@ constexpr std::array<CellFacts, 25> Facts = { {
 
 constexpr CellFacts Unknown = { 0, -1, 0, "cells of another type" };
 
-/// The facts by type.
+/// The properties of each type.
 constexpr std::array<CellFacts, 256> makeTable()
 {
   std::array<CellFacts, 256> table{};
@@ -70,7 +70,7 @@ const CellFacts& facts(unsigned char type)
   return Table[type];
 }
 
-/// Smallest and largest dimension of cells; -1 for both without any.
+/// Smallest and largest dimension of cells; -1 for both if there are none.
 std::pair<int, int> dimensionRange(const std::vector<unsigned char>& types)
 {
   std::array<bool, 256> present{};
@@ -236,7 +236,7 @@ void MeshFile::addCells(unsigned char type, std::vector<Index> nodes)
     this->connectivity = std::move(nodes);
     return;
   }
-  // Not insert(): GCC 14 warns of an overflow that cannot be.
+  // Not insert(): GCC 14 warns of an overflow that cannot occur.
   const std::size_t first = this->connectivity.size();
   this->connectivity.resize(first + nodes.size());
   std::copy(nodes.begin(), nodes.end(), this->connectivity.data() + first);

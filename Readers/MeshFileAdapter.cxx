@@ -30,7 +30,7 @@ namespace tautline
 {
 namespace
 {
-/// A VTK array with the values of a vector, tuple i taken from order[i] if there is an order.
+/// A VTK array with the values of a vector; tuple i is tuple order[i], if there is an order.
 template <class ArrayT, class Values>
 vtkSmartPointer<vtkDataArray> copyValues(
   const Values& values, int components, const std::vector<Index>& order = {})
@@ -71,7 +71,7 @@ vtkSmartPointer<vtkDataArray> toArray(const MeshArray& array, const std::vector<
   return result;
 }
 
-/// Adds an array to the points or cells; the numbers of a part's points or cells become global ids.
+/// Adds an array to the points or cells; the point or cell numbers of a part become global ids.
 void addArray(vtkDataSetAttributes* to, const MeshArray& array, const char* ids,
   const std::vector<Index>& order = {})
 {
@@ -143,7 +143,7 @@ MeshArray fromArray(vtkDataArray* array)
   return result;
 }
 
-/// As above for the usual types, without going through variants.
+/// Like the above for common types, without using variants.
 MeshArray fromUsualArray(vtkDataArray* array)
 {
   const auto take = [&](auto* typed, auto values)
@@ -183,7 +183,7 @@ std::vector<MeshArray> fromArrays(vtkFieldData* data)
   return arrays;
 }
 
-/// Adds one cell; false if no file has its type.
+/// Adds one cell; false if no format supports its type.
 bool addCell(MeshFile& mesh, int type, vtkIdType size, const vtkIdType* ids)
 {
   if (type == VTK_PIXEL)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MeshFileAdapter.h
- * @brief A MeshFile as a VTK data set, and a VTK data set as a MeshFile.
+ * @brief Converts a MeshFile to a VTK data set, and a VTK data set to a MeshFile.
  */
 #ifndef tautline_MeshFileAdapter_h
 #define tautline_MeshFileAdapter_h
@@ -22,18 +22,18 @@ class vtkUnstructuredGrid;
 
 namespace tautline
 {
-/// Fills an empty grid: points in double precision, 64-bit cells, all arrays. The large vectors
-/// become the grid's without being copied.
+/// Fills an empty grid: points in double precision, 64-bit cells, all arrays. The large vectors are
+/// moved into the grid without a copy.
 TAUTLINEREADERS_EXPORT void toGrid(MeshFile mesh, vtkUnstructuredGrid* grid);
 
-/// Fills an empty surface; cells are in the order VTK requires: vertices, lines, polygons.
+/// Fills an empty surface; cells are in the order required by VTK: vertices, lines, polygons.
 TAUTLINEREADERS_EXPORT void toSurface(MeshFile mesh, vtkPolyData* surface);
 
 /**
- * @brief Copies a data set. Pixels and voxels become quadrilaterals and hexahedra, ghost cells are
- * left out, arrays that are not numeric too.
+ * @brief Copies a data set. Pixels and voxels become quadrilaterals and hexahedra; ghost cells and
+ * arrays that are not numeric are left out.
  *
- * Throws Error, naming types and counts, on cells that the file formats do not have (strips,
+ * Throws Error, with types and counts, for cells that the file formats do not support (strips,
  * polyhedra, ...).
  */
 TAUTLINEREADERS_EXPORT MeshFile fromDataSet(vtkDataSet* input);
@@ -49,7 +49,7 @@ vtkSmartPointer<ArrayT> takeValues(std::vector<Value> values, int components)
   const auto size = static_cast<vtkIdType>(values.size());
   if (size > 0)
   {
-    // a vector whose destructor never runs: VTK gives the memory back
+    // a vector whose destructor never runs: VTK frees the memory
     alignas(Vector) unsigned char kept[sizeof(Vector)];
     Value* memory = (new (kept) Vector(std::move(values)))->data();
     array->SetArray(reinterpret_cast<typename ArrayT::ValueType*>(memory), size, 0,

@@ -13,7 +13,7 @@ namespace
 {
 constexpr unsigned char Duplicate = 1; // vtkDataSetAttributes::DUPLICATECELL and DUPLICATEPOINT
 
-/// A cell and its centre along an axis; cells at the same place are ordered by their numbers.
+/// A cell and its center along an axis; cells at the same position are ordered by their numbers.
 using PlacedCell = std::pair<double, Index>;
 
 /// The mean of a cell's nodes along an axis.
@@ -30,7 +30,7 @@ double centre(const MeshFile& mesh, Index cell, int axis)
 
 using PlacedCells = std::vector<PlacedCell>::iterator;
 
-/// The axis along which the centres of the cells are spread farthest.
+/// The axis with the largest extent of the cell centers.
 int longestAxis(const MeshFile& mesh, PlacedCells begin, PlacedCells end)
 {
   constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -54,8 +54,8 @@ int longestAxis(const MeshFile& mesh, PlacedCells begin, PlacedCells end)
   return longest;
 }
 
-/// Divides the cells of `parts` parts into those of the first parts / 2 and the others, which begin
-/// at the result.
+/// Divides the cells of `parts` parts into the cells of the first parts / 2 parts and the others,
+/// which begin at the result.
 PlacedCells halve(const MeshFile& mesh, PlacedCells begin, PlacedCells end, int parts)
 {
   const int axis = longestAxis(mesh, begin, end);
@@ -102,7 +102,7 @@ std::vector<Index> ownCells(const MeshFile& mesh, int part, int parts)
   return result;
 }
 
-/// Gives the cells their parts, from `first` on.
+/// Assigns parts, numbered from `first`, to the cells.
 void divide(const MeshFile& mesh, PlacedCells begin, PlacedCells end, int first, int parts,
   std::vector<int>& partOfCell)
 {
@@ -128,7 +128,7 @@ void markNodes(const MeshFile& mesh, const std::vector<Index>& cells, std::vecto
   }
 }
 
-/// The cells of other parts within some layers, in the order of the file.
+/// The cells of other parts within several layers, in the order of the file.
 std::vector<Index> ghostCells(
   const MeshFile& mesh, const std::vector<Index>& own, std::vector<char> reached, int layers)
 {
@@ -178,7 +178,7 @@ MeshArray gather(const MeshArray& array, const std::vector<Index>& ids)
   return result;
 }
 
-/// Replaces the array of that name or appends it.
+/// Replaces the array of the same name, or appends it.
 void setArray(std::vector<MeshArray>& arrays, MeshArray array)
 {
   arrays.erase(std::remove_if(arrays.begin(), arrays.end(),
@@ -187,7 +187,7 @@ void setArray(std::vector<MeshArray>& arrays, MeshArray array)
   arrays.push_back(std::move(array));
 }
 
-/// The arrays of the chosen points or cells; `own` tells which are no ghosts.
+/// The arrays of the chosen points or cells; `own` flags items that are not ghosts.
 template <class Own>
 std::vector<MeshArray> partArrays(const std::vector<MeshArray>& arrays,
   const std::vector<Index>& ids, const char* idName, bool withGhosts, const Own& own)

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MeshPart.h
- * @brief The part of a mesh file that one of several ranks keeps.
+ * @brief The part of a mesh file that is kept by one of several ranks.
  *
- * The ranks of an MPI job read the same file and each keeps its own part, so that no mesh is sent.
- * The parts are compact, since cells are divided by their places: the boxes of recursive bisection
- * along the longest side. All ranks find the same division without a message.
+ * The ranks of an MPI job read the same file and each keeps its own part, so that no mesh data are
+ * sent. The parts are compact, because cells are divided by position: into the boxes of recursive
+ * bisection along the longest side. All ranks find the same division without communication.
  */
 #ifndef tautline_MeshPart_h
 #define tautline_MeshPart_h
@@ -14,14 +14,14 @@
 
 namespace tautline
 {
-/// Number of a point in the file, from 0 (int64, in the arrays of the points).
+/// Index of a point in the file, from 0 (int64, a point array).
 constexpr const char* PartPointIds = "GlobalPointIds";
-/// Number of a cell in the file, from 0 (int64, in the arrays of the cells).
+/// Index of a cell in the file, from 0 (int64, a cell array).
 constexpr const char* PartCellIds = "GlobalCellIds";
-/// VTK's name for the flags of ghosts, 1 where a point or cell belongs to another part (uint8).
+/// VTK's name for ghost flags, 1 if a point or cell belongs to another part (uint8).
 constexpr const char* PartGhosts = "vtkGhostType";
 
-/// What a process wants of a mesh.
+/// The part of a mesh requested by a process.
 struct PartRequest
 {
   int part = 0;        ///< from 0
@@ -30,12 +30,12 @@ struct PartRequest
 };
 
 /**
- * @brief The cells of one part with their points, all arrays, and the arrays named above.
+ * @brief The cells of one part with their points, all arrays, and the arrays above.
  *
  * The numbers of cells of two parts differ by at most one. Each cell is in one part; a point is in
- * each part that has a cell with it, and a ghost only where none but ghost cells have it. Points
- * without a cell are in the first part. Own cells come first, then ghost cells, both in the order
- * of the file. Takes O(cells log parts) time and 16 bytes per cell beside the mesh.
+ * each part with one of its cells, and is a ghost only if all its cells there are ghosts. Points
+ * without a cell are in the first part. Owned cells come first, then ghost cells, both in the order
+ * of the file. Takes O(cells log parts) time and 16 bytes per cell in addition to the mesh.
  */
 TAUTLINEREADERS_EXPORT MeshFile partOf(const MeshFile& mesh, const PartRequest& request);
 

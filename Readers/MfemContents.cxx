@@ -8,10 +8,10 @@ namespace tautline
 {
 namespace
 {
-/// So many that the nodes of a mesh can be counted.
+/// A limit that allows the nodes of a mesh to be counted without overflow.
 constexpr Index MostVertices = std::numeric_limits<Index>::max() / 1024;
 
-/// VTK's cells of a shape: of first, second and higher order.
+/// VTK's cells of a shape, of first, second and higher order.
 struct CellCodes
 {
   unsigned char linear, quadratic, higher;
@@ -49,11 +49,11 @@ void readMfemHeader(TextCursor& cursor)
   }
   const bool nonconforming = kind.find("NC") != kind.npos || kind == "mesh v1.1";
   cursor.fail("MFEM " + kind.substr(0, 40) +
-    (nonconforming ? ": nonconforming meshes are not read; refine the mesh to a conforming one"
-                   : " is not read; save it as a mesh with nodes of H1 by SetCurvature()"));
+    (nonconforming ? ": nonconforming meshes are not supported; refine the mesh to a conforming one"
+                   : " is not supported; save it as a mesh with H1 nodes using SetCurvature()"));
 }
 
-/// Sections of names that no array has: all to the line with a word.
+/// Skips sections of names that no array holds, up to the line with a word.
 void skipAttributeSets(TextCursor& cursor, const char* next, std::vector<std::string>& warnings)
 {
   cursor.skipToToken();
@@ -110,7 +110,7 @@ MfemElements readElements(TextCursor& cursor, const char* section, int dimension
   return elements;
 }
 
-/// Vertices of no element are not counted by MFEM's numbering, and are left out.
+/// Vertices of no element are not counted in MFEM's numbering and are left out.
 void removeUnusedVertices(MfemMesh& mesh, const TextCursor& cursor)
 {
   std::vector<Index> number(static_cast<std::size_t>(mesh.vertices), -1);
@@ -120,7 +120,7 @@ void removeUnusedVertices(MfemMesh& mesh, const TextCursor& cursor)
     {
       if (vertex >= mesh.vertices)
       {
-        cursor.fail("an element has vertex " + std::to_string(vertex) + ", there are " +
+        cursor.fail("an element has vertex " + std::to_string(vertex) + "; there are " +
           std::to_string(mesh.vertices));
       }
       number[static_cast<std::size_t>(vertex)] = 0;
@@ -151,7 +151,7 @@ void removeUnusedVertices(MfemMesh& mesh, const TextCursor& cursor)
   }
 }
 
-/// The vertices, or their number and "nodes"; true where nodes follow.
+/// Reads the vertices, or their number and "nodes"; true if nodes follow.
 bool readVertices(TextCursor& cursor, MfemMesh& mesh)
 {
   expectWord(cursor, "vertices");
@@ -186,7 +186,7 @@ bool readVertices(TextCursor& cursor, MfemMesh& mesh)
   return false;
 }
 
-/// The values of the nodes, and where they stand.
+/// The values of the nodes, and their positions in the text.
 void readValues(TextCursor& cursor, Index nodes, const char* start, MfemContents& contents)
 {
   constexpr std::size_t shortest = 2; // a digit and a blank
@@ -216,7 +216,7 @@ void readValues(TextCursor& cursor, Index nodes, const char* start, MfemContents
   }
 }
 
-/// What the numbering of nodes needs: distinct vertices, no pyramids.
+/// The requirements of the node numbering: distinct vertices, no pyramids.
 void checkCurved(const MfemMesh& mesh, const MfemSpace& space, const TextCursor& cursor)
 {
   for (const MfemElements* part : { &mesh.elements, &mesh.boundary })
@@ -228,11 +228,12 @@ void checkCurved(const MfemMesh& mesh, const MfemSpace& space, const TextCursor&
       const unsigned char geometry = part->geometries[element];
       if (space.isCubic && (geometry == MfemCube || geometry == MfemPrism))
       {
-        cursor.fail("the collection Cubic is not read for cubes and prisms; call SetCurvature(3)");
+        cursor.fail(
+          "the collection Cubic is not supported for cubes and prisms; call SetCurvature(3)");
       }
       if (geometry == MfemPyramid)
       {
-        cursor.fail("curved pyramids are not read; VTK has no such cells of MFEM's space");
+        cursor.fail("curved pyramids are not supported; VTK has no such cells of MFEM's space");
       }
       for (const Index* vertex = begin; vertex < end; ++vertex)
       {
@@ -265,7 +266,7 @@ void readSpace(TextCursor& cursor, MfemMesh& mesh, MfemSpace& space, bool& byNod
   byNodes = cursor.nextInteger("Ordering", 0, 1) == 0;
 }
 
-/// The file ends, or the part of a parallel mesh.
+/// Reads the end of the file, or of the part of a parallel mesh.
 void readEnd(TextCursor& cursor, std::vector<std::string>& warnings)
 {
   if (!cursor.skipToToken())
@@ -276,8 +277,8 @@ void readEnd(TextCursor& cursor, std::vector<std::string>& warnings)
   const std::string_view word = cursor.word();
   if (word == "mfem_serial_mesh_end")
   {
-    warnings.push_back(
-      "This is the part of one process: what it shares with other parts is left out.");
+    warnings.push_back("This is the part of one process: the data on entities shared with other "
+                       "parts are left out.");
   }
   else if (word != "mfem_mesh_end")
   {
@@ -332,7 +333,7 @@ void readMfemContents(TextCursor& cursor, const char* start, MfemContents& conte
   mesh.dimension = static_cast<int>(cursor.nextInteger("dimension", 1, 3));
   if (mesh.dimension == 1)
   {
-    cursor.fail("meshes of lines are not read");
+    cursor.fail("meshes of lines are not supported");
   }
   mesh.elements = readElements(cursor, "elements", mesh.dimension);
   skipAttributeSets(cursor, "boundary", contents.warnings);

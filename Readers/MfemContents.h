@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MfemContents.h
- * @brief What a file of MFEM holds, before nodes are evaluated, and the shapes of its elements.
+ * @brief The contents of an MFEM file before nodes are evaluated, and the shapes of its elements.
  *
  * Internal: not installed.
  */
@@ -17,7 +17,7 @@
 
 namespace tautline
 {
-/// Numbers of shapes in the files.
+/// The numbers of shapes in the files.
 enum MfemGeometry : int
 {
   MfemPoint = 0,
@@ -48,11 +48,11 @@ struct MfemContents
   bool curved = false; ///< whether it has nodes
   MfemSpace space;
   bool byNodes = false; ///< whether all first coordinates come first (Ordering: 0)
-  /// Of each coordinate of a node, in the order of MfemMesh::coordinates: where its text begins and
-  /// ends, in bytes.
+  /// For each coordinate of a node, in the order of MfemMesh::coordinates: the start and end of its
+  /// text, in bytes.
   std::vector<std::pair<std::size_t, std::size_t>> texts;
   std::vector<std::string> warnings;
-  /// Of the nodes, or of the vertices of a straight mesh.
+  /// The numbering of the nodes, or of the vertices of a straight mesh.
   std::optional<MfemNumbering> numbering;
 
   MfemContents() = default;
@@ -62,17 +62,17 @@ struct MfemContents
 
 /**
  * @brief Reads all sections of a file. Throws FileError.
- * @param start of the file, from which MfemContents::texts count; null: these stay empty
+ * @param start of the file, the origin of MfemContents::texts; if null, these stay empty
  */
 void readMfemContents(TextCursor& cursor, const char* start, MfemContents& contents);
 
-/// VTK's cell of a shape with all nodes of an order.
+/// VTK's cell for a shape, with all nodes of an order.
 unsigned char mfemCellType(int geometry, int order);
 
 /// The shape of a cell, by the number in MFEM's files; -1 for a cell that MFEM does not have.
 int mfemGeometry(unsigned char type);
 
-/// The values of the space on the elements, one after the other or common to neighbors.
+/// The number of values of the space on the elements, separate or shared by neighbors.
 Index countMfemValues(const MfemMesh& mesh, const MfemSpace& space, const MfemNumbering& numbering);
 }
 #endif

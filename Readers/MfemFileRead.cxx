@@ -38,7 +38,7 @@ public:
     }
   }
 
-  /// Points by the values of the space, and the elements.
+  /// Makes the points from the values of the space, and the elements.
   void addElements(const std::vector<double>& values)
   {
     this->Tolerance = this->size(values) * RelativeTolerance;
@@ -95,7 +95,7 @@ public:
       }
       if (!found)
       {
-        cursor.fail("boundary element " + std::to_string(element) + " is no side of an element");
+        cursor.fail("boundary element " + std::to_string(element) + " is not a side of an element");
       }
       this->Output.addCell(
         mfemCellType(geometry, this->Space.order), cell.data(), static_cast<Index>(cell.size()));
@@ -105,10 +105,10 @@ public:
   Index differentCopies() const { return this->Copies; }
 
 private:
-  static constexpr double RelativeTolerance = 1e-9; ///< of the size of the mesh
+  static constexpr double RelativeTolerance = 1e-9; ///< relative to the size of the mesh
   static constexpr std::size_t ElementsPerPoll = 4096;
 
-  /// Finds where the nodes of VTK's cell are in the lattice, and how values are evaluated.
+  /// Finds the positions of the nodes of VTK's cell in the lattice, and the evaluation of values.
   void prepare(int geometry)
   {
     const auto at = static_cast<std::size_t>(geometry);
@@ -117,7 +117,7 @@ private:
     const std::vector<LatticePoint> lattice = shape.lattice(order);
     const unsigned char type = mfemCellType(geometry, order);
     std::vector<Vec3> places;
-    // A pyramid is of first order, and has its corners alone.
+    // A pyramid is of first order and has only its corners.
     for (const LatticePoint& place : shape.dimension == 0 || geometry == MfemPyramid
         ? shape.corners
         : cellPlaces(type, static_cast<Index>(lattice.size())))
@@ -162,7 +162,7 @@ private:
     return largest;
   }
 
-  /// The places of VTK's nodes from the values of an element, in the order of the lattice.
+  /// The positions of VTK's nodes from the values of an element, in the order of the lattice.
   void evaluate(unsigned char geometry, std::vector<Vec3>& points)
   {
     const std::vector<double>& matrix = this->Evaluations[geometry];
@@ -184,7 +184,8 @@ private:
     points.swap(this->Scratch);
   }
 
-  /// The point of a node at a place: that of an element before, unless it is elsewhere.
+  /// The point of a node at a position: the point from an earlier element, unless its position
+  /// differs.
   Index pointOf(Index node, const Vec3& place)
   {
     Index& first = this->Points[static_cast<std::size_t>(node)];
@@ -222,12 +223,12 @@ private:
   const MfemSpace& Space;
   MeshFile& Output;
   const MfemNumbering& Numbering;
-  std::vector<Index> Points;   ///< by node: the first of its points
+  std::vector<Index> Points;   ///< by node: its first point
   std::vector<Index> NextCopy; ///< by point: the next point of the same node
   Index Copies = 0;
   double Tolerance = 0.0;
   std::array<std::vector<double>, MfemShapes> Evaluations;
-  std::array<std::vector<std::size_t>, MfemShapes> Orders; ///< place in the lattice, by VTK's node
+  std::array<std::vector<std::size_t>, MfemShapes> Orders; ///< lattice index, by VTK's node
   std::vector<Vec3> Scratch;
 };
 }
@@ -255,7 +256,7 @@ MeshFile readMfem(const std::string& name, bool lowerCells)
   {
     output.warnings.push_back("Elements have different coordinates at a common node: " +
       std::to_string(builder.differentCopies()) +
-      " more points were made, as a periodic mesh needs them.");
+      " additional points were created, as required for a periodic mesh.");
   }
   output.cellArrays.push_back({ "Reference", 1, std::move(references) });
   return output;

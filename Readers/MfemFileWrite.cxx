@@ -13,7 +13,7 @@ namespace tautline
 {
 namespace
 {
-constexpr double RelativeTolerance = 1e-9; ///< of the size of the mesh, as in the reader
+constexpr double RelativeTolerance = 1e-9; ///< relative to the size of the mesh, as in the reader
 constexpr double NoValue = std::numeric_limits<double>::quiet_NaN();
 
 std::size_t toSize(Index i)
@@ -86,7 +86,7 @@ bool sameCell(const MeshFile& a, const MeshFile& b, std::size_t cell)
     });
 }
 
-/// The cells of a dimension as elements, whose vertices are the corners by their new numbers.
+/// The cells of a dimension as elements, whose vertices are the renumbered corners.
 MfemElements elementsOf(const MeshFile& mesh, int dimension, std::vector<Index>& vertexOf,
   Index& vertices, std::vector<std::size_t>* cells)
 {
@@ -100,7 +100,7 @@ MfemElements elementsOf(const MeshFile& mesh, int dimension, std::vector<Index>&
       continue;
     }
     const int geometry = mfemGeometry(type);
-    // The corners come first in VTK's cells; their places are those of MFEM's corners.
+    // The corners come first in VTK's cells, in the positions of MFEM's corners.
     const int order =
       type == FilePyramid || type == FileVertex ? 0 : cellOrder(type, cellSize(mesh, cell));
     const std::vector<LatticePoint> places =
@@ -145,7 +145,7 @@ int findOrder(const MeshFile& mesh, const std::string& name)
       throw FileError(name + ": MFEM's files cannot hold " + cellPlural(type) + " of " +
         std::to_string(cellSize(mesh, cell)) + " nodes (cell " + std::to_string(cell) +
         "): cells of orders 1 to " + std::to_string(MaxMfemOrder) +
-        ", the same along all axes, are written; write .vtu");
+        ", the same along all axes, are supported; write .vtu");
     }
     largest = std::max(largest, order);
   }
@@ -154,7 +154,7 @@ int findOrder(const MeshFile& mesh, const std::string& name)
   if (largest > 1 && hasPyramids)
   {
     throw FileError(
-      name + ": MFEM's nodes of pyramids are not written: triangulate the mesh, or write .vtu");
+      name + ": MFEM's nodes of pyramids are not supported: triangulate the mesh, or write .vtu");
   }
   return largest;
 }
@@ -200,7 +200,7 @@ double sizeOf(const MeshFile& mesh)
   return size;
 }
 
-/// The values of H1: of each node the value on its first element, which others must agree with.
+/// The values in H1: for each node the value on its first element, with which others must agree.
 std::vector<Vec3> commonValues(const MeshFile& mesh, const std::vector<std::size_t>& cells,
   const MfemNumbering& numbering, const MfemSpace& space, const std::string& name)
 {
@@ -220,7 +220,7 @@ std::vector<Vec3> commonValues(const MeshFile& mesh, const std::vector<std::size
       if (std::sqrt(dot(offset, offset)) > tolerance)
       {
         throw FileError(name + ": neighbors of cell " + std::to_string(cells[element]) +
-          " have other points on the side between them: write nodes of L2");
+          " have different points on the side between them: write L2 nodes");
       }
       value = std::isnan(value[0]) ? found[i] : value;
     }
@@ -236,7 +236,7 @@ std::vector<std::string> writeMfem(const MeshFile& mesh, const std::string& name
   const int dimension = mesh.dimension();
   if (dimension < 2)
   {
-    throw FileError(name + ": MFEM's meshes of lines are not written");
+    throw FileError(name + ": MFEM's meshes of lines are not supported");
   }
   const int spaceDimension = mesh.planar() ? 2 : 3;
   std::vector<Index> vertexOf(toSize(mesh.numberOfPoints()), -1);
@@ -316,7 +316,7 @@ std::vector<std::string> rewriteMfem(
   {
     throw FileError(name + ": the mesh has other cells or another number of points than " + source);
   }
-  // New values, where an element has moved; values on unmoved neighbors stay as they are.
+  // New values for elements that have moved; values on unmoved neighbors do not change.
   const auto width = toSize(contents.mesh.spaceDimension);
   std::vector<Vec3> values(contents.mesh.coordinates.size() / width, { NoValue, NoValue, NoValue });
   std::vector<char> kept(values.size(), 0);
@@ -338,7 +338,7 @@ std::vector<std::string> rewriteMfem(
     }
     first += static_cast<Index>(nodes.size());
   }
-  std::map<std::size_t, std::size_t> inOrder; // of the text: of which coordinate
+  std::map<std::size_t, std::size_t> inOrder; // position in the text: its coordinate
   for (std::size_t i = 0; i < contents.texts.size(); ++i)
   {
     if (!kept[i / width])

@@ -10,7 +10,7 @@ namespace
 {
 constexpr std::array<int, 3> NoAxes = { 0, 0, 0 };
 
-/// The shapes by MFEM's numbers, with the order of edges and faces that its numbering follows.
+/// The shapes by MFEM's numbers, with the order of edges and faces used in its numbering.
 const std::array<MfemShape, 8>& shapes()
 {
   static const std::array<MfemShape, 8> table = { {
@@ -51,7 +51,7 @@ const std::array<MfemShape, 8>& shapes()
   return table;
 }
 
-/// Whether the basis function of order 1 of a corner is positive at a place.
+/// Whether the first-order basis function of a corner is positive at a position.
 bool hasShare(
   const MfemShape& shape, const LatticePoint& corner, const LatticePoint& place, int order)
 {
@@ -75,13 +75,13 @@ bool hasShare(
   return positive && (!hasSimplex || !isOrigin || sum < order);
 }
 
-/// The corners that have a share in a place: one at a vertex, two on an edge, ...
+/// The corners that contribute to a position: one at a vertex, two on an edge, ...
 std::vector<int> cornersAt(const MfemShape& shape, const LatticePoint& place, int order)
 {
   std::vector<int> corners;
   for (std::size_t corner = 0; corner < shape.corners.size(); ++corner)
   {
-    // With the order 1 each place is a corner, which alone has a share: also of a pyramid.
+    // With order 1 each position is a corner, the only contribution, also for a pyramid.
     if (order == 1 ? shape.corners[corner] == place
                    : hasShare(shape, shape.corners[corner], place, order))
     {
@@ -91,7 +91,7 @@ std::vector<int> cornersAt(const MfemShape& shape, const LatticePoint& place, in
   return corners;
 }
 
-/// The steps from one corner of an element to a place, along an edge to another corner.
+/// The steps from one corner of an element to a position, along an edge to another corner.
 int stepsAlong(const MfemShape& shape, int from, int to, const LatticePoint& place, int order)
 {
   int product = 0, square = 0;
@@ -254,7 +254,7 @@ Index MfemNumbering::nodeOfFace(const MfemShape& shape, const Index* vertices, c
     const int j = stepsAlong(shape, local[0], last, place, order);
     return face.firstNode + (i - 1) + Index{ j - 1 } * (order - 1);
   }
-  // On a triangle, the steps towards a corner are the share of the corner.
+  // On a triangle, the steps toward a corner are the contribution of the corner.
   const auto share = [&](int corner)
   {
     int others = 0;

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MfemNumbering.h
- * @brief The numbers that MFEM's space H1 gives to the nodes of a mesh.
+ * @brief The numbering of the nodes of a mesh in MFEM's space H1.
  *
- * First the vertices, then the nodes inside of edges, of faces and of elements. Edges and faces are
- * numbered as they first occur in the elements. The nodes of an edge run from its vertex with the
- * smaller number; the nodes of a face run as the corners of the face do in its first element.
+ * Vertices come first, then the nodes inside edges, faces and elements. Edges and faces are
+ * numbered in the order of their first occurrence in the elements. The nodes of an edge start from
+ * its vertex with the smaller number; the nodes of a face follow the corners of the face in its
+ * first element.
  *
  * Internal: not installed.
  */
@@ -43,13 +44,14 @@ public:
   Index numberOfNodes() const { return this->Total; }
   /**
    * @brief The nodes of an element, in the order of its shape's lattice.
-   * @param boundary the boundary elements it is one of; null for one of the constructor's elements
-   * @return false for a boundary element that is no edge or face of an element
+   * @param boundary the boundary elements that contain it; null for an element passed to the
+   * constructor
+   * @return false for a boundary element that is not an edge or face of an element
    */
   bool nodesOf(std::size_t element, const MfemElements* boundary, std::vector<Index>& nodes) const;
 
 private:
-  /// As many -1 as there are fewer than four vertices, then the vertices in order.
+  /// The vertices in order, padded in front with -1 to four entries.
   using Key = std::array<Index, 4>;
 
   struct Hash
@@ -71,7 +73,7 @@ private:
     Index firstNode;
     std::array<Index, 4> vertices; ///< as in the first element
   };
-  /// A place of the lattice, with the corners that have a share in it.
+  /// A position in the lattice, with the corners that contribute to it.
   struct Place
   {
     LatticePoint place;

@@ -11,7 +11,7 @@ namespace
 {
 constexpr double Pi = 3.14159265358979323846;
 
-/// The Legendre polynomial of a degree of at least 1 at x in [-1, 1], and its derivative.
+/// The Legendre polynomial of a degree at least 1 at x in [-1, 1], and its derivative.
 std::pair<double, double> legendre(int degree, double x)
 {
   double before = 1.0, value = x, slope = 1.0, slopeBefore = 0.0;
@@ -27,7 +27,7 @@ std::pair<double, double> legendre(int degree, double x)
   return { value, slope };
 }
 
-constexpr int NewtonSteps = 20; // far more than the 5 it takes to reach rounding
+constexpr int NewtonSteps = 20; // far more than the 5 needed to reach rounding
 
 /// The zeros of a Legendre polynomial, in [0, 1].
 double gaussLegendrePoint(int i, int count)
@@ -51,7 +51,7 @@ double gaussLobattoPoint(int i, int order)
   double x = -std::cos(Pi * i / order);
   for (int step = 0; step < NewtonSteps; ++step)
   {
-    // By Legendre's equation, (1 - x^2) P'' = 2 x P' - n (n + 1) P.
+    // From Legendre's equation, (1 - x^2) P'' = 2 x P' - n (n + 1) P.
     const auto [value, slope] = legendre(order, x);
     const double curvature = (2.0 * x * slope - order * (order + 1) * value) / (1.0 - x * x);
     x -= slope / curvature;
@@ -77,7 +77,7 @@ double pointOn(MfemSpace::Basis basis, int i, int order)
   }
 }
 
-/// Where the node of a lattice place is.
+/// The position of the node at a lattice point.
 Vec3 nodeAt(const MfemShape& shape, MfemSpace::Basis basis, int order, const LatticePoint& place)
 {
   Vec3 x = { 0.0, 0.0, 0.0 };
@@ -111,7 +111,7 @@ BernsteinSpace bernsteinSpace(const MfemShape& shape, int order)
   return BernsteinSpace(factors);
 }
 
-/// Removes a start from a text; false if it has another one.
+/// Removes a prefix from a text; false if the text does not start with it.
 bool skip(std::string_view& text, std::string_view start)
 {
   const bool found = text.substr(0, start.size()) == start;
@@ -130,11 +130,11 @@ MfemSpace::Basis basisOfLetter(char letter)
     case 'U':
       return MfemSpace::ClosedUniform;
     default:
-      throw Error(std::string("nodes of the basis '") + letter + "' are not read");
+      throw Error(std::string("nodes of the basis '") + letter + "' are not supported");
   }
 }
 
-/// The number at the start of a text, which it is removed from; -1 without one.
+/// Removes the number at the start of a text and returns it; -1 if there is none.
 int number(std::string_view& text)
 {
   int value = -1;
@@ -179,11 +179,11 @@ MfemSpace MfemSpace::parse(std::string_view name, int dimension)
   if (space.order < 0 || !name.empty())
   {
     throw Error("nodes of the collection '" + full +
-      "' are not read: give the mesh nodes of H1 or L2 by SetCurvature()");
+      "' are not supported: give the mesh H1 or L2 nodes using SetCurvature()");
   }
   if (space.order < 1 || space.order > MaxMfemOrder)
   {
-    throw Error("nodes of order " + std::to_string(space.order) + " are not read, 1 to " +
+    throw Error("nodes of order " + std::to_string(space.order) + " are not supported; 1 to " +
       std::to_string(MaxMfemOrder) + " are");
   }
   return space;
@@ -193,7 +193,7 @@ MfemSpace MfemSpace::parse(std::string_view name, int dimension)
 std::vector<double> MfemSpace::evaluation(
   const MfemShape& shape, const std::vector<Vec3>& places) const
 {
-  // Up to order 2 the closed points are evenly spaced, too.
+  // Up to order 2 the closed points are also evenly spaced.
   constexpr int largestAlike = 2;
   const bool linearLike = this->basis == Bernstein && this->order == 1;
   if (this->basis == ClosedUniform || linearLike ||

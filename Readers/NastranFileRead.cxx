@@ -14,24 +14,24 @@ namespace tautline
 namespace
 {
 constexpr std::size_t SmallField = 8, LargeField = 16;
-constexpr std::size_t SmallFields = 8, LargeFields = 4; ///< of data, in a line
+constexpr std::size_t SmallFields = 8, LargeFields = 4; ///< data fields per line
 
-// Node i of VTK's cell is node order[i] of Nastran's: middle nodes of upright edges come before
-// those of the top, and the normal of a wedge's first triangle points inwards.
+// Node i of VTK's cell is node order[i] of Nastran's: midside nodes of vertical edges come before
+// the top edges, and the normal of a wedge's first triangle points inward.
 constexpr int NastranWedge[] = { 0, 2, 1, 3, 5, 4 };
 constexpr int NastranWedge15[] = { 0, 2, 1, 3, 5, 4, 8, 7, 6, 14, 13, 12, 9, 11, 10 };
 constexpr int NastranHexahedron20[] = { 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 16, 17, 18, 19, 12,
   13, 14, 15 };
 
-/// A card of elements; `first` is the field of the first node, from 0 behind the name.
+/// An element card; `first` is the field of the first node, from 0 after the name.
 struct ElementCard
 {
   const char* name;
   std::size_t first;
-  std::size_t nodes; ///< of the linear cell
+  std::size_t nodes; ///< for the linear cell
   unsigned char type;
   const int* order;
-  std::size_t quadraticNodes; ///< 0: there is no such cell
+  std::size_t quadraticNodes; ///< 0 if there is no such cell
   unsigned char quadraticType;
   const int* quadraticOrder;
 };
@@ -45,7 +45,7 @@ constexpr ElementCard NastranElements[] = {
   { "CSHEAR", 2, 4, FileQuadrilateral, nullptr, 0, 0, nullptr },
   { "CQUAD8", 2, 4, FileQuadrilateral, nullptr, 8, FileQuadrilateral8, nullptr },
   { "CQUAD", 2, 4, FileQuadrilateral, nullptr, 9, FileQuadrilateral9, nullptr },
-  { "CQUAD9", 2, 4, FileQuadrilateral, nullptr, 9, FileQuadrilateral9, nullptr }, // of meshio
+  { "CQUAD9", 2, 4, FileQuadrilateral, nullptr, 9, FileQuadrilateral9, nullptr }, // used by meshio
   { "CTETRA", 2, 4, FileTetrahedron, nullptr, 10, FileTetrahedron10, nullptr },
   { "CPYRAM", 2, 5, FilePyramid, nullptr, 13, FilePyramid13, nullptr },
   { "CPYRA", 2, 5, FilePyramid, nullptr, 13, FilePyramid13, nullptr },
@@ -58,13 +58,13 @@ constexpr ElementCard NastranElements[] = {
   { "CONROD", 1, 2, FileLine, nullptr, 0, 0, nullptr },
 };
 
-/// Beginnings of the names of cards with C that have no shape.
+/// Prefixes of the names of C cards that have no shape.
 constexpr const char* Shapeless[] = { "CORD", "CONM", "CMASS", "CELAS", "CDAMP", "CVISC", "CBUSH",
   "CGAP", "CSET", "CSUPEXT", "CTRIAX", "CONV", "CHBDY", "CAABSF", "CFAST", "CWELD", "CREEP", "COMP",
   "CSCHD", "CSTM", "CSUPER", "CFLSTR", "CINTC", "COUPMASS", "CLOAD", "CYJOIN", "CYSYM", "CONTACT",
   "CONTROL", "CQUADX" };
 
-/// The logical fields of a card behind its name, and where it began.
+/// The logical fields of a card after its name, and its start.
 struct Card
 {
   std::string name;
@@ -77,7 +77,7 @@ struct Card
   }
 };
 
-/// A system of coordinates: its origin and the directions of its axes, rows.
+/// A coordinate system: its origin and the directions of its axes, as rows.
 struct NastranSystem
 {
   char kind = 'R'; ///< R, C or S
@@ -133,7 +133,7 @@ private:
   std::deque<std::string> Expanded; ///< lines with tabs
 };
 
-/// The next line without its comment, tabs as blanks; lines of nothing else are left out.
+/// The next line without its comment and with tabs as blanks; blank lines are skipped.
 bool NastranParser::next(std::string_view& line)
 {
   while (this->Text.next(line))
@@ -158,7 +158,7 @@ bool NastranParser::next(std::string_view& line)
   return false;
 }
 
-/// Whether a line belongs to the card before it.
+/// Whether a line continues the previous card.
 bool NastranParser::continues(std::string_view line) const
 {
   if (line.find(',') != line.npos)
@@ -204,7 +204,7 @@ void NastranParser::addFields(std::string_view line, bool first, Card& card)
     }
     card.name = std::string(trimmed(card.name));
   }
-  fields.resize(count); // what follows is the mark of the continuation
+  fields.resize(count); // the rest is the continuation mark
   card.fields.insert(card.fields.end(), fields.begin(), fields.end());
 }
 
@@ -297,7 +297,7 @@ void NastranParser::readGrid(const Card& card)
 {
   GridPoint grid{};
   grid.number = this->integer(card, 0, "the number", -1);
-  grid.system = this->integer(card, 1, "the system of coordinates", 0);
+  grid.system = this->integer(card, 1, "the coordinate system", 0);
   grid.place = card.place;
   if (card.field(1).empty())
   {
@@ -316,14 +316,14 @@ void NastranParser::readSystem(const Card& card)
   system.kind = card.name[5];
   system.place = card.place;
   const Index number = this->integer(card, 0, "the number", -1);
-  system.reference = this->integer(card, 1, "the system of reference", 0);
+  system.reference = this->integer(card, 1, "the reference system", 0);
   for (std::size_t i = 0; i < system.points.size(); ++i)
   {
     system.points[i] = this->real(card, 2 + i, "a coordinate");
   }
   if (number == 0 || !this->Systems.emplace(number, system).second)
   {
-    card.place.fail("the system of coordinates " + std::to_string(number) + " is given twice");
+    card.place.fail("the coordinate system " + std::to_string(number) + " is given twice");
   }
 }
 
@@ -344,7 +344,7 @@ void NastranParser::readElement(const Card& card, const ElementCard& element)
   {
     card.place.fail(card.name + " " + std::to_string(number) + " has " + std::to_string(middle) +
       " of its " + std::to_string(element.quadraticNodes - element.nodes) +
-      " middle nodes: elements between the first and the second order are not supported");
+      " midside nodes: elements between the first and the second order are not supported");
   }
   this->Cells.add(middle ? element.quadraticType : element.type, number, nodes.data(),
     middle ? element.quadraticOrder : element.order, card.place);
@@ -365,7 +365,7 @@ void NastranParser::handle(const Card& card)
   }
   else if (card.name == "GRDSET")
   {
-    this->DefaultSystem = this->integer(card, 1, "the system of coordinates", 0);
+    this->DefaultSystem = this->integer(card, 1, "the coordinate system", 0);
   }
   else if (card.name == "CORD2R" || card.name == "CORD2C" || card.name == "CORD2S")
   {
@@ -385,7 +385,7 @@ bool beginsBulkData(std::string_view line)
   return text.rfind("BEGIN", 0) == 0 && text.find("BULK") != text.npos;
 }
 
-/// The bulk data; the sections before it are skipped. A file without BEGIN BULK is all bulk data.
+/// Reads the bulk data; preceding sections are skipped. A file without BEGIN BULK is all bulk data.
 void NastranParser::parse()
 {
   std::string_view line;
@@ -421,13 +421,13 @@ double dotProduct(const std::array<double, 3>& a, const std::array<double, 3>& b
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// The origin and the axes of a system in the basic one.
+/// The origin and the axes of a system in the basic system.
 const NastranSystem& NastranParser::resolve(Index number, const CardPlace& place)
 {
   const auto found = this->Systems.find(number);
   if (found == this->Systems.end())
   {
-    place.fail("the system of coordinates " + std::to_string(number) +
+    place.fail("the coordinate system " + std::to_string(number) +
       " is not given by CORD2R, CORD2C or CORD2S");
   }
   NastranSystem& system = found->second;
@@ -437,7 +437,7 @@ const NastranSystem& NastranParser::resolve(Index number, const CardPlace& place
   }
   if (system.visited)
   {
-    system.place.fail("systems of coordinates refer to each other in a circle");
+    system.place.fail("coordinate systems refer to each other in a circle");
   }
   system.visited = true;
   std::array<std::array<double, 3>, 3> points;
@@ -457,7 +457,7 @@ const NastranSystem& NastranParser::resolve(Index number, const CardPlace& place
   const double length = std::sqrt(dotProduct(z, z)), width = std::sqrt(dotProduct(x, x));
   if (!(length > 0.0) || !(width > 0.0))
   {
-    system.place.fail("the points of a system of coordinates are on a line");
+    system.place.fail("the points of a coordinate system are on a line");
   }
   for (std::size_t c = 0; c < 3; ++c)
   {
@@ -530,7 +530,7 @@ MeshFile NastranParser::assemble()
   for (const auto& [card, count] : this->LeftOut)
   {
     mesh.warnings.push_back(
-      std::to_string(count) + " cards " + card + " are left out: no such elements are read");
+      std::to_string(count) + " cards " + card + " are left out: such elements are not supported");
   }
   return mesh;
 }

@@ -11,14 +11,14 @@ namespace tautline
 {
 namespace
 {
-/// Which numbers a vertex has.
+/// The kinds of numbers of a vertex.
 struct Layout
 {
   bool colors = false;
   bool normals = false;
 };
 
-/// Geomview's default colour of a face.
+/// Geomview's default color of a face.
 constexpr double Grey = 170.0;
 
 Layout readKeyword(TextCursor& cursor)
@@ -45,13 +45,13 @@ Layout readKeyword(TextCursor& cursor)
   }
   if (!cursor.lineIsOver() && cursor.word() == "BINARY")
   {
-    cursor.fail("binary OFF files cannot be read; save it as text");
+    cursor.fail("binary OFF files are not supported; save it as text");
   }
   cursor.moveTo(place + word.size());
   return layout;
 }
 
-/// Reads colours of any form; all are bytes unless one has a point.
+/// Reads colors of any form; all are bytes unless one has a decimal point.
 class Colors
 {
 public:
@@ -67,7 +67,7 @@ public:
       if (!(value >= 0.0 && value <= 255.0))
       {
         cursor.failAt(
-          place, "a colour is " + std::string(text) + ", from 0 to 255 (or to 1.0) is allowed");
+          place, "a color is " + std::string(text) + ", from 0 to 255 (or to 1.0) is allowed");
       }
       this->Values.push_back(value);
     }
@@ -97,7 +97,7 @@ void readVertices(TextCursor& cursor, Layout layout, Index count, MeshFile& mesh
   if (layout.colors && colors != 3 && colors != 4)
   {
     cursor.fail("a vertex has " + std::to_string(columns) + " numbers; " + std::to_string(fixed) +
-      " and 3 or 4 for a colour are expected");
+      " and 3 or 4 for a color are expected");
   }
   mesh.points.resize(static_cast<std::size_t>(3 * count));
   std::vector<double> normals(layout.normals ? mesh.points.size() : 0);
@@ -126,10 +126,10 @@ void readVertices(TextCursor& cursor, Layout layout, Index count, MeshFile& mesh
   }
 }
 
-/// The colours behind the corners: none, or 3 or 4 numbers each.
+/// The colors after the corners: none, or 3 or 4 numbers each.
 struct FaceColors
 {
-  std::vector<int> components; ///< of each face
+  std::vector<int> components; ///< for each face
   Colors colors;
 };
 
@@ -155,14 +155,14 @@ void readFaces(TextCursor& cursor, Index count, MeshFile& mesh, FaceColors& colo
       ids.data(), corners);
     const int rest = cursor.tokensInLine();
     const int components =
-      rest == 3 || rest == 4 ? rest : 0; // one number would be an entry of a colour map
+      rest == 3 || rest == 4 ? rest : 0; // one number would be an entry of a color map
     colors.components.push_back(components);
     colors.colors.read(cursor, components);
     cursor.skipRestOfLine();
   }
 }
 
-/// One tuple per face from those of the faces that have a colour.
+/// One tuple per face from the tuples of the colored faces.
 void addFaceColors(FaceColors& faces, MeshFile& mesh)
 {
   const int width = faces.components.empty()

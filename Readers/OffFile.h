@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file OffFile.h
- * @brief Geomview's text OFF, COFF, NOFF and CNOFF files of polygons.
+ * @brief Reads and writes Geomview's text OFF, COFF, NOFF and CNOFF files of polygons.
  *
- * Colours of vertices and of faces become `Color`: bytes (3 or 4) where the file has whole numbers,
- * doubles between 0 and 1 otherwise. Where only some faces have a colour, the others get Geomview's
- * grey (170 170 170). Faces with one or two corners are vertices and lines.
+ * Colors of vertices and of faces become `Color`: bytes (3 or 4) if the file has integers,
+ * otherwise doubles between 0 and 1. If only some faces have a color, the others get Geomview's
+ * gray (170 170 170). Faces with one or two corners become vertices and lines.
  */
 #ifndef tautline_OffFile_h
 #define tautline_OffFile_h

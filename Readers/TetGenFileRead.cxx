@@ -25,7 +25,7 @@ struct NodeHeader
   bool markers = false;
 };
 
-/// Vertices and how other files number them.
+/// Vertices and their numbering in other files.
 struct NodeList
 {
   NodeHeader header;
@@ -48,7 +48,7 @@ NodeHeader readNodeHeader(TextCursor& cursor)
   return header;
 }
 
-/// Arrays for attribute columns: as named in a comment that Tautline wrote, or Attribute1, ...
+/// Arrays for attribute columns: named in a comment written by Tautline, or Attribute1, ...
 std::vector<MeshArray> attributeArrays(
   const FileContent& file, Index columns, Index tuples, bool elements)
 {
@@ -88,7 +88,7 @@ void readAttributes(TextCursor& cursor, std::vector<MeshArray>& arrays, Index tu
   }
 }
 
-/// A reference is a whole number where all of its values are.
+/// A reference is an integer array if all of its values are integers.
 void makeIntegral(MeshArray& array)
 {
   constexpr double Exact = 9007199254740992.0; // 2^53
@@ -101,7 +101,7 @@ void makeIntegral(MeshArray& array)
   }
 }
 
-/// The number that starts a line; numbers count up from `base`.
+/// Reads the number that starts a line; numbers are consecutive from `base`.
 void readNumber(TextCursor& cursor, const char* what, Index expected)
 {
   if (!cursor.skipToToken())
@@ -181,8 +181,8 @@ NodeList readNodeFile(
   return nodes;
 }
 
-/// Where a file's local node numbers go in VTK's order: TetGen lists the middle nodes of a
-/// quadratic tetrahedron and triangle in another one.
+/// The positions of a file's local nodes in VTK's order: TetGen lists the midside nodes of a
+/// quadratic tetrahedron and triangle in a different order.
 std::vector<int> vtkPlaces(unsigned char type)
 {
   switch (type)
@@ -209,7 +209,7 @@ unsigned char elementType(const TextCursor& cursor, const char* place, Index nod
   }
   cursor.failAt(place,
     "elements with " + std::to_string(nodes) + " nodes in " + std::to_string(dimension) +
-      "D; 3 or 6 (triangles in 2D), 4 or 10 (tetrahedra in 3D) can be read");
+      "D; 3 or 6 (triangles in 2D), 4 or 10 (tetrahedra in 3D) are supported");
 }
 
 /// The node numbers of a record, as point ids in VTK's order.
@@ -258,8 +258,8 @@ void readElements(const FileContent& file, const NodeList& nodes, MeshFile& mesh
   mesh.cellArrays = std::move(arrays);
 }
 
-/// Appends the markers of the cells just added; earlier cells without one get 0, arrays of earlier
-/// cells get 0 for these.
+/// Appends the markers of the cells just added; earlier cells without a marker get 0, and arrays of
+/// earlier cells get 0 for the new cells.
 void addMarkers(MeshFile& mesh, std::vector<Index> markers, bool present)
 {
   const std::size_t cells = mesh.cellTypes.size();
@@ -282,7 +282,7 @@ void addMarkers(MeshFile& mesh, std::vector<Index> markers, bool present)
   }
 }
 
-/// Faces (3 or 6 nodes) or edges (2 or 3) with an optional marker; numbers of neighbours are
+/// Faces (3 or 6 nodes) or edges (2 or 3) with an optional marker; numbers of neighbors are
 /// skipped.
 void readBoundary(const FileContent& file, const NodeList& nodes, bool faces, MeshFile& mesh)
 {
@@ -343,7 +343,7 @@ MeshFile readTetGen(const std::string& name, bool lowerCells)
   if (extension != "node" && extension != "ele" && extension != "face" && extension != "edge")
   {
     throw FileError(
-      name + ": .node, .ele, .face, .edge, .poly or .smesh is expected as the file's ending");
+      name + ": the file name extension must be .node, .ele, .face, .edge, .poly or .smesh");
   }
   MeshFile mesh;
   SetCheck set;
@@ -382,7 +382,7 @@ MeshFile readTetGen(const std::string& name, bool lowerCells)
 
 namespace
 {
-/// Corners of a polygon, which may continue on the next lines.
+/// Reads the corners of a polygon, which may continue on the next lines.
 void readPolygon(TextCursor& cursor, const NodeList& nodes, Index corners, MeshFile& mesh)
 {
   cursor.expectRoom(corners, 2, "number of corners");
@@ -409,7 +409,7 @@ void readPoint(TextCursor& cursor, int dimension, std::vector<double>& to)
   }
 }
 
-/// The holes or regions after the facets: count, then lines that start with a number.
+/// Reads the holes or regions after the facets: count, then lines that start with a number.
 Index readListHeader(TextCursor& cursor, const char* what)
 {
   if (!cursor.skipToToken())
@@ -461,7 +461,7 @@ void readHolesAndRegions(TextCursor& cursor, int dimension, MeshFile& mesh)
   }
 }
 
-/// The facet lists, by kind of file; each returns with a marker per cell.
+/// Read the facet lists, by kind of file; each returns one marker per cell.
 struct FacetReader
 {
   TextCursor& cursor;

@@ -18,14 +18,14 @@ namespace
 constexpr std::array<int, 10> Tetrahedron10Order = { 0, 1, 2, 3, 9, 7, 4, 5, 8, 6 };
 constexpr std::array<int, 6> Triangle6Order = { 0, 1, 2, 4, 5, 3 };
 
-/// The cells of a mesh, by the file they go to.
+/// The cells of a mesh, by their file.
 struct Plan
 {
   bool planar = false;
   std::vector<Index> elements, faces, edges, vertices;
 };
 
-/// Markers of points or cells: BoundaryMarker, or Reference where there is none.
+/// Markers of points or cells: BoundaryMarker, or otherwise Reference.
 const MeshArray* markerArray(const std::vector<MeshArray>& arrays)
 {
   const MeshArray* marker = findArray(arrays, "BoundaryMarker");
@@ -97,12 +97,11 @@ void writeTuple(TextOutput& out, const std::vector<const MeshArray*>& columns, I
     list += (list.empty() ? "" : ", ") + std::to_string(count) + " " + cellPlural(type);
   }
   throw FileError(name + ": these files cannot hold " + list +
-    " of such a mesh; take the cells of one kind (Extract Cells By Type), run Tetrahedralize "
-    "first, "
-    "or write Gmsh's .msh");
+    " of such a mesh; extract the cells of one kind (Extract Cells By Type), run Tetrahedralize "
+    "first, or write Gmsh's .msh");
 }
 
-/// Sorts the cells by file, or refuses.
+/// Sorts the cells by file; throws Error for cells that are not supported.
 Plan planFiles(const MeshFile& mesh, const std::string& name)
 {
   Plan plan;
@@ -186,7 +185,7 @@ TextOutput writeElements(const MeshFile& mesh, const Plan& plan, const std::stri
 {
   TextOutput out(name);
   const MeshArray* own = findArray(mesh.cellArrays, "BoundaryMarker");
-  // a marker of the faces is no attribute of the elements
+  // a marker of the faces is not an attribute of the elements
   const MeshArray* marker = own && !(plan.faces.empty() && plan.edges.empty()) ? own : nullptr;
   const auto columns = attributeColumns(mesh.cellArrays, marker, "Reference");
   const bool plain = columns.size() == 1 && columns[0]->name == "Reference" &&
@@ -230,7 +229,7 @@ TextOutput writeBoundary(
   return out;
 }
 
-/// Rows of a field array behind a count; `skip` leading components are not written.
+/// Writes the rows of a field array after their count; `skip` leading components are not written.
 void writeList(TextOutput& out, const MeshArray* array, int dimension)
 {
   const Index rows = array ? static_cast<Index>(array->size()) / array->components : 0;
@@ -384,7 +383,7 @@ std::vector<std::string> writeTetGen(const MeshFile& mesh, const std::string& na
   if (extension != "node" && extension != "ele" && extension != "face" && extension != "edge")
   {
     throw FileError(
-      name + ": .node, .ele, .face, .edge, .poly or .smesh is expected as the file's ending");
+      name + ": the file name extension must be .node, .ele, .face, .edge, .poly or .smesh");
   }
   const Plan plan = planFiles(mesh, name);
   TextOutput nodes(stem + ".node");

@@ -20,7 +20,7 @@ namespace tautline
 {
 namespace
 {
-/// The start of what stands at a place, as it can be printed.
+/// The start of the text at a position, in printable form.
 std::string excerpt(const char* at, const char* end)
 {
   constexpr std::ptrdiff_t Longest = 20;
@@ -49,7 +49,7 @@ std::string found(const char* at, const char* end)
 //------------------------------------------------------------------------------
 OpenFile openFile(const std::string& name)
 {
-  // Without O_NONBLOCK a pipe that nobody writes to would be opened only then.
+  // Without O_NONBLOCK, opening a pipe would wait for a writer.
   const int descriptor = open(name.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
   std::FILE* file = descriptor < 0 ? nullptr : fdopen(descriptor, "rb");
   if (descriptor >= 0 && !file)
@@ -322,8 +322,7 @@ void adviseLargePages(void* memory, std::size_t bytes)
   const std::uintptr_t end = (first + bytes) / LargePage * LargePage;
   if (begin < end)
   {
-    madvise(
-      reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE); // advice: failing is no error
+    madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE); // failure is not an error
   }
 }
 

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TextCursor.h
- * @brief A file in memory and a place in it: numbers, words, lines and raw bytes, checked.
+ * @brief A file in memory and a position in it, with checked reads of numbers, words, lines and raw
+ * bytes.
  *
- * Every read that fails throws FileError "file:line: problem"; the line is counted only then, so it
- * costs nothing on good files. Numbers are parsed with std::from_chars. Nothing is ever read past
- * the end, and no count of a file is used before the bytes it needs are found in the file.
+ * Every read that fails throws FileError "file:line: problem"; lines are counted only then, without
+ * a cost for valid files. Numbers are parsed with std::from_chars. Nothing is read past the end,
+ * and a count in a file is not used before the file is known to have the required number of bytes.
  */
 #ifndef tautline_TextCursor_h
 #define tautline_TextCursor_h
@@ -23,15 +24,14 @@
 namespace tautline
 {
 using OpenFile = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
-/// The file opened for reading, or null; never waits, whatever kind of file it is.
+/// Opens a file for reading; null on failure. Never waits, whatever the kind of file.
 OpenFile openFile(const std::string& name);
 
-/// The bytes of a file, read at once.
+/// The bytes of a file, read as a whole.
 class FileContent
 {
 public:
-  /// Throws FileError when the file cannot be read; `why` is the purpose ("the companion of
-  /// ...").
+  /// Throws FileError if the file cannot be read; `why` is the purpose ("the companion of ...").
   explicit FileContent(const std::string& name, const std::string& why = std::string());
   /// The bytes of a string.
   FileContent(std::string name, std::string_view bytes);
@@ -40,7 +40,7 @@ public:
   const char* begin() const { return this->Bytes.get(); }
   const char* end() const { return this->Bytes.get() + this->Size; }
   static constexpr std::size_t Padding =
-    8; ///< bytes of 0 behind the end, so that eight can be loaded
+    8; ///< zero bytes after the end, so that eight can be loaded
 
 private:
   std::string Name;
@@ -57,8 +57,8 @@ private:
 class TextCursor
 {
 public:
-  /// Starts after a UTF-8 byte order mark. With `comment` set, it and the rest of its line are
-  /// blank.
+  /// Starts after a UTF-8 byte order mark. If `comment` is set, this character and the rest of its
+  /// line count as blank.
   explicit TextCursor(const FileContent& file, char comment = '\0');
 
   /// Throws FileError with the current file and line.
@@ -82,7 +82,7 @@ public:
       this->skipRestOfLine();
     }
   }
-  /// Whether nothing but blanks and a comment is left in this line.
+  /// Whether only blanks and a comment are left in this line.
   bool lineIsOver()
   {
     this->skipBlanks();
@@ -100,13 +100,13 @@ public:
     }
     return true;
   }
-  /// To the '\n' (or the end) of this line.
+  /// Moves to the '\n' (or the end) of this line.
   void skipRestOfLine();
-  /// The numbers and words between here and the end of the line.
+  /// The number of tokens between here and the end of the line.
   int tokensInLine();
   /// Throws unless the line is over; counts a record.
   void expectLineEnd();
-  /// For records that are no lines: polls, and reports how far it is, with each 4096th.
+  /// For records that are not lines: polls and reports progress at each 4096th record.
   void countRecord()
   {
     constexpr int recordsPerPoll = 4096;
@@ -132,9 +132,9 @@ public:
     }
     return value;
   }
-  /// A whole number in this line.
+  /// An integer in this line.
   Index integer(const char* what);
-  /// A whole number within [low, high].
+  /// An integer within [low, high].
   Index integer(const char* what, Index low, Index high)
   {
     this->skipBlanks();
@@ -150,11 +150,11 @@ public:
   Index count(const char* what, std::size_t bytes);
   /// Throws unless `records` records of at least `bytes` bytes can be in the rest of the file.
   void expectRoom(Index records, std::size_t bytes, const char* what) const;
-  /// Everything up to the next blank or line end; empty at the end of the line.
+  /// The text up to the next blank or line end; empty at the end of the line.
   std::string_view word();
-  /// The next word of this or a later line; `what` names it where the file ends before.
+  /// The next word in this or a later line; `what` names it in the message if the file ends first.
   std::string nextWord(const char* what);
-  /// The next token of this or a later line, a whole number within [low, high].
+  /// The next token in this or a later line, an integer within [low, high].
   Index nextInteger(const char* what, Index low, Index high)
   {
     this->skipToToken();
@@ -226,8 +226,9 @@ inline double TextCursor::real(const char* what)
 inline Index TextCursor::integer(const char* what)
 {
   this->skipBlanks();
-  // Up to seven digits at once: eight bytes in a register, the digits moved to its upper end, then
-  // pairs, fours and eights of digits combined. (The content ends with eight bytes of padding.)
+  // Parses up to seven digits at once: loads eight bytes into a register, moves the digits to its
+  // upper end, then combines pairs, fours and eights of digits. (The content ends with eight bytes
+  // of padding.)
   std::uint64_t bytes;
   std::memcpy(&bytes, this->At, sizeof(bytes));
   bytes ^= 0x3030303030303030u;
@@ -249,11 +250,11 @@ inline Index TextCursor::integer(const char* what)
   return static_cast<Index>(bytes);
 }
 
-/// Requests large pages from the system: touching a large new array for the first time in ordinary
-/// ones takes as long as filling it.
+/// Requests large pages from the system: with ordinary pages, the first access to a large new array
+/// takes as long as filling it.
 void adviseLargePages(void* memory, std::size_t bytes);
 
-/// Room for `size` values in all, in large pages where there are some.
+/// Reserves memory for `size` values in total, in large pages if available.
 template <class Vector>
 void reserveLarge(Vector& values, std::size_t size)
 {
@@ -275,7 +276,7 @@ void resizeLarge(Vector& values, std::size_t size)
 /// The first word of a file, of at most 40 bytes; empty if it cannot be read.
 std::string firstWord(const std::string& name);
 
-/// A column list in a comment by which Tautline's writers keep array names: "Velocity:3:f ...".
+/// A column in a comment in which Tautline's writers store array names: "Velocity:3:f ...".
 struct ColumnName
 {
   std::string name;
@@ -283,11 +284,11 @@ struct ColumnName
   char code; ///< f, i or u
 };
 
-/// Finds the line "# <title> ..." in the first kilobytes; empty without one or if it is malformed.
+/// Finds the line "# <title> ..." in the first kilobytes; empty if it is missing or malformed.
 std::vector<ColumnName> readColumnNames(const FileContent& file, std::string_view title);
 /// The line for readColumnNames(), with its line end.
 std::string writeColumnNames(std::string_view title, const std::vector<ColumnName>& columns);
-/// Puts a number into an array of any type.
+/// Stores a number in an array of any type.
 void setValue(MeshArray& array, std::size_t i, double value);
 }
 #endif

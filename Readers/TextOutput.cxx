@@ -21,7 +21,7 @@ std::uint64_t mix(std::uint64_t bits)
   return bits ^ bits >> 33;
 }
 
-/// Eight bytes at a time.
+/// Processes eight bytes at a time.
 std::uint64_t sumOf(std::uint64_t sum, std::string_view text)
 {
   sum = combine(sum, text.size());

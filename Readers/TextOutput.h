@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TextOutput.h
- * @brief Text written through one large buffer, numbers in the fewest digits that read back the
- * same.
+ * @brief Writes text through one large buffer, with the shortest numbers that read back the same.
  */
 #ifndef tautline_TextOutput_h
 #define tautline_TextOutput_h
@@ -16,11 +15,11 @@
 
 namespace tautline
 {
-/// A failure leaves an older file as it was, see AtomicFile.
+/// A failure leaves an existing file unchanged, see AtomicFile.
 class TextOutput
 {
 public:
-  /// Throws FileError when the file cannot be created.
+  /// Throws FileError if the file cannot be created.
   explicit TextOutput(const std::string& name);
   TextOutput(TextOutput&&) noexcept = default;
   TextOutput(const TextOutput&) = delete;
@@ -39,23 +38,24 @@ public:
   TextOutput& operator<<(double value) { return this->number(value); }
   TextOutput& operator<<(Index value) { return this->number(value); }
   TextOutput& operator<<(int value) { return this->number(value); }
-  /// The value i of an array, in the form of its type.
+  /// Writes value i of an array, in the format of its type.
   void value(const MeshArray& array, std::size_t i);
-  /// Bytes as they are in memory.
+  /// Writes the bytes in memory.
   template <class T>
   void binary(const T& value)
   {
     this->Buffer.append(reinterpret_cast<const char*>(&value), sizeof(T));
   }
-  /// Ends a line and hands full buffers to the system.
+  /// Ends a line and passes full buffers to the system.
   void endLine();
-  /// Hands full buffers to the system, for records that are no lines.
+  /// Passes full buffers to the system, for records that are not lines.
   void endRecord();
-  /// A check sum of the content so far, not of cryptographic strength.
+  /// A checksum of the content so far, without cryptographic strength.
   std::uint64_t checkSum() const;
-  /// The complete file, to be replaced with others; throws FileError when a byte was not written.
+  /// The complete file, to be replaced together with others; throws FileError if a byte was not
+  /// written.
   AtomicFile finish();
-  /// Replaces the file; throws FileError when anything could not be written.
+  /// Replaces the file; throws FileError if not everything could be written.
   void close();
 
 private:
@@ -71,10 +71,10 @@ private:
 
   AtomicFile File;
   std::string Buffer;
-  std::uint64_t FlushedSum = 0; ///< of what is no longer in the buffer
+  std::uint64_t FlushedSum = 0; ///< checksum of flushed content
 };
 
-/// A check sum of two check sums in this order.
+/// A checksum of two checksums in this order.
 std::uint64_t combine(std::uint64_t first, std::uint64_t second);
 }
 #endif

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkAbaqusReader
- * @brief Reads the mesh of input files of Abaqus and CalculiX, .inp.
+ * @brief Reads the mesh of input files of Abaqus and CalculiX (.inp).
  *
  * Parts and instances become one mesh, with the translations and rotations of the assembly. Node
- * and element sets are arrays of 0 and 1 with their names. Files that generate nodes or elements
- * (*NGEN, *ELGEN, ...) and unknown types of elements are refused, with their line.
+ * and element sets become arrays of 0 and 1 with their names. Files that generate nodes or elements
+ * (*NGEN, *ELGEN, ...) and unknown element types are an error that gives the line.
  *
  * @sa vtkMeshFileReader tautline::readAbaqus
  */

@@ -45,7 +45,7 @@ void vtkFluentMeshReader::ReadPart(const tautline::PartRequest& request, vtkData
   if (extension == "cas" && tautline::openFile(base + ".dat"))
   {
     vtkWarningMacro(<< this->FileName << ": the mesh is read without the results in " << base
-                    << ".dat; VTK's FLUENTReader has these");
+                    << ".dat; use VTK's FLUENTReader for these");
   }
   tautline::FoamPiece piece;
   if (request.parts > 1)
@@ -63,7 +63,7 @@ void vtkFluentMeshReader::ReadPart(const tautline::PartRequest& request, vtkData
   catch (const tautline::FoamDefect& defect)
   {
     throw tautline::FileError(std::string(this->FileName) + ": " + defect.problem +
-      " (cells, faces and points are counted from 0)");
+      " (cells, faces and points are numbered from 0)");
   }
   this->PatchList = tautline::patchList(piece.mesh);
   tautline::toGrid(std::move(piece), this->LowerCells, vtkUnstructuredGrid::SafeDownCast(output));

@@ -3,40 +3,40 @@
  * @class vtkFoamMeshReader
  * @brief Reads the mesh of an OpenFOAM case: polyhedra, patches and zones, without its fields.
  *
- * FileName is a .foam or .OpenFOAM file in the directory of the case, its system/controlDict, the
+ * FileName is a .foam or .OpenFOAM file in the case directory, its system/controlDict, the
  * directory itself, or a directory polyMesh. Files are text or binary, with labels and scalars of
- * 32 or 64 bits, also compressed. What is missing, truncated or inconsistent is an error with file
- * and line (in binary files the byte). Points are those of the constant mesh; a warning names a
- * time step that has others.
+ * 32 or 64 bits, and may be compressed. Missing, truncated or inconsistent data are an error with
+ * file and line (in binary files the byte). Points are from the constant mesh; a warning names a
+ * time step that has other points.
  *
  * The output has all points in the order of the file, then
- * - the cells: cell i is cell i of OpenFOAM; a tetrahedron, pyramid, wedge or hexahedron where its
- *   faces are those of VTK's cell, else a polyhedron, its faces in the order of their numbers, each
- *   as seen from outside;
+ * - the cells: cell i is cell i of OpenFOAM; a tetrahedron, pyramid, wedge or hexahedron if its
+ *   faces match VTK's cell, otherwise a polyhedron with its faces in the order of their numbers,
+ *   each as seen from outside;
  * - with PatchFaces, the faces of the boundary in their order: triangles, quadrilaterals, polygons.
  *
  * Cell arrays:
  * - `Patch` (int): number of the patch of a face of the boundary; -1 for cells
  * - `Face` (vtkIdType): number of a face of the boundary in OpenFOAM; -1 for cells
- * - `CellZone` (int), if there are zones: number of the (first) zone of a cell; -1: none
+ * - `CellZone` (int), if there are zones: number of the (first) zone of a cell; -1 for none
  *
  * Field arrays:
- * - `PatchNames`, `PatchTypes` (strings): of each patch
- * - `NeighbourPatch` (int): of each patch, the number of its neighbourPatch, or -1
- * - `ProcessorNumbers` (int, 2 components), if there are processor patches: of each patch its
- *   myProcNo and neighbProcNo, -1 of others
+ * - `PatchNames`, `PatchTypes` (strings): name and type of each patch
+ * - `NeighbourPatch` (int): for each patch, the number of its neighbourPatch, or -1
+ * - `ProcessorNumbers` (int, 2 components), if there are processor patches: the myProcNo and
+ *   neighbProcNo of each processor patch, -1 for others
  * - `CellZoneNames`, `FaceZoneNames` (strings), and for each zone of faces `FaceZone <name>`
  *   (vtkIdType) with the numbers of its faces
  * - `FacesOutOfOrder` (vtkIdType): the number of internal faces that are not in upper triangular
- *   order, as checkMesh counts them
+ *   order, as counted by checkMesh
  * - `FoamCase` (strings): the absolute paths of the directories polyMesh that were read, for
  *   vtkFoamPointsWriter
  *
- * Decomposed cases: one process reads one mesh, in the order of the mesh before the decomposition
- * if the lists *ProcAddressing are there and fit, else joined along the processor patches. If a
- * piece r of n is requested, it has the processors r, r + n, ..., with their processor patches. A
- * case that is not decomposed is divided, and gets processor patches. Pieces have global ids of
- * points and cells (the cells first, then the faces of the boundary), and no ghost cells.
+ * Decomposed cases: a single process reads one mesh, in the order before the decomposition if the
+ * lists *ProcAddressing exist and fit, otherwise joined along the processor patches. A requested
+ * piece r of n has the processors r, r + n, ..., with their processor patches. A case that is not
+ * decomposed is divided and gets processor patches. Pieces have global point and cell ids (the
+ * cells first, then the faces of the boundary), and no ghost cells.
  *
  * @sa vtkMeshFileReader vtkFoamPointsWriter tautline::readFoamCase
  */
@@ -52,17 +52,17 @@ public:
   vtkTypeMacro(vtkFoamMeshReader, vtkMeshFileReader);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /// Which mesh of a case is read.
+  /// The meshes of a case.
   enum CaseTypes
   {
-    AUTOMATIC,     ///< constant/polyMesh if there is one, else the processors
+    AUTOMATIC,     ///< constant/polyMesh if it exists, otherwise the processors
     RECONSTRUCTED, ///< constant/polyMesh
     DECOMPOSED     ///< processor0, processor1, ...
   };
 
   ///@{
   /**
-   * Which mesh of a case is read; another number is an error, and not set. The default is
+   * The mesh of a case to read; an invalid number is an error and is not set. The default is
    * AUTOMATIC.
    */
   void SetCaseType(int type);
@@ -71,8 +71,8 @@ public:
 
   ///@{
   /**
-   * The region, whose mesh is in constant/<region>/polyMesh. The default, none, is
-   * constant/polyMesh.
+   * The region, whose mesh is in constant/<region>/polyMesh. By default there is none, and the mesh
+   * is in constant/polyMesh.
    */
   vtkSetStringMacro(RegionName);
   vtkGetStringMacro(RegionName);
@@ -80,7 +80,7 @@ public:
 
   ///@{
   /**
-   * Whether the faces of the boundary are cells of the output. The default is on. The same as
+   * Whether the faces of the boundary are cells of the output. The default is on. Same as
    * LowerCells.
    */
   void SetPatchFaces(bool on) { this->SetLowerCells(on); }
@@ -89,7 +89,7 @@ public:
   ///@}
 
   /**
-   * Number, name and type of each patch of the mesh that was read last, a line each.
+   * Number, name and type of each patch of the last mesh read, one line each.
    */
   const char* GetPatchList() const { return this->PatchList.c_str(); }
 

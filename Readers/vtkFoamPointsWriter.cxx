@@ -39,7 +39,7 @@ std::string parentOf(const std::string& name)
   return fs::absolute(name).parent_path().string();
 }
 
-/// The directories in the array FoamCase; none without it.
+/// The directories in the array FoamCase; empty if it is missing.
 std::vector<std::string> foldersOf(vtkDataObject* mesh)
 {
   std::vector<std::string> folders;
@@ -53,18 +53,19 @@ std::vector<std::string> foldersOf(vtkDataObject* mesh)
   return folders;
 }
 
-/// Throws unless the first cells of a mesh are those of the case, in any order of their points.
+/// Throws unless the first cells of a mesh equal the cells of the case, in any order of their
+/// points.
 void checkCells(vtkDataSet* mesh, const tautline::FoamCells& cells, const std::string& name)
 {
   const auto count = static_cast<vtkIdType>(cells.types.size());
   const auto refuse = [&name](const std::string& difference)
   {
     throw tautline::Error(
-      name + ": the mesh is not that of the case, or the case has changed: " + difference);
+      name + ": the mesh does not belong to the case, or the case has changed: " + difference);
   };
   if (mesh->GetNumberOfCells() < count)
   {
-    refuse("it has " + std::to_string(mesh->GetNumberOfCells()) + " cells, and the case has " +
+    refuse("it has " + std::to_string(mesh->GetNumberOfCells()) + " cells, but the case has " +
       std::to_string(count));
   }
   vtkNew<vtkIdList> scratch;
@@ -82,12 +83,12 @@ void checkCells(vtkDataSet* mesh, const tautline::FoamCells& cells, const std::s
     std::sort(expected.begin(), expected.end());
     if (found != expected)
     {
-      refuse("cell " + std::to_string(cell) + " has other points");
+      refuse("cell " + std::to_string(cell) + " has different points");
     }
   }
 }
 
-/// The coordinates of a mesh; those of the file where they are the same in the mesh's precision.
+/// The coordinates of a mesh; the file's coordinates if they are equal in the mesh's precision.
 std::vector<double> coordinates(vtkDataSet* mesh, const std::vector<double>& inFile)
 {
   std::vector<double> points(inFile.size());
@@ -118,8 +119,8 @@ std::string vtkFoamPointsWriter::TargetName()
   }
   if (folders.empty())
   {
-    throw tautline::Error("no file name, and the mesh has no field array FoamCase: name the .foam "
-                          "file of the case");
+    throw tautline::Error(
+      "no file name, and the mesh has no field array FoamCase: give the .foam file of the case");
   }
   return folders[0];
 }
@@ -159,13 +160,13 @@ std::vector<std::string> vtkFoamPointsWriter::WriteDataSet(
   if (!moving.empty())
   {
     throw tautline::Error(name + ": the mesh of the case moves: it has " + moving[0] +
-      ", whose points hold from that time on; delete it, or write into that directory");
+      ", whose points are used from that time on; delete it, or write to that directory");
   }
   const tautline::FoamPiece whole = tautline::readFoamFolders(folders);
   if (mesh->GetNumberOfPoints() != whole.mesh.numberOfPoints())
   {
     throw tautline::Error(name + ": the mesh has " + std::to_string(mesh->GetNumberOfPoints()) +
-      " points, and the case has " + std::to_string(whole.mesh.numberOfPoints()) +
+      " points, but the case has " + std::to_string(whole.mesh.numberOfPoints()) +
       ": it is not the mesh of the case, or the case has changed");
   }
   checkCells(mesh, whole.cells, name);

@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkFoamPointsWriter
- * @brief Writes the points of a mesh back into the OpenFOAM case that it was read from.
+ * @brief Writes the points of a mesh back to its OpenFOAM case.
  *
- * Only the files `points` change, of a decomposed case those of all processors, and in them only
- * the coordinates of points that have moved: format, width and compression stay, and so do
- * boundary, zones and fields. The files are replaced all together, or none of them.
+ * Only the files `points` change (for a decomposed case, on all processors), and in them only the
+ * coordinates of points that have moved: format, width and compression are kept, and so are
+ * boundary, zones and fields. Either all files are replaced or none.
  *
- * The case is that of FileName (as in vtkFoamMeshReader) or, without one, that of the field array
- * `FoamCase`, which vtkFoamMeshReader adds. With both, FileName may be a copy of the case, in
- * another directory; `FoamCase` names the region and the processors.
+ * The case is given by FileName (as in vtkFoamMeshReader) or, without it, by the field array
+ * `FoamCase`, which vtkFoamMeshReader adds. With both, FileName may be a copy of the case in
+ * another directory; `FoamCase` gives the region and the processors.
  *
- * Refused: a mesh with other cells or another number of points than the case, as after it has
- * changed; coordinates that are not finite; and a case with points of time steps, which would hold
- * instead. Points of the input in single precision that are those of the file, rounded, have not
- * moved.
+ * The following are errors: a mesh whose cells or number of points differ from the case, for
+ * example because the case has changed; coordinates that are not finite; and a case with points of
+ * time steps, which would be used instead. Input points in single precision that equal the rounded
+ * points of the file count as unmoved.
  *
- * The input is a vtkUnstructuredGrid with the cells of vtkFoamMeshReader first; others behind them,
+ * The input is a vtkUnstructuredGrid with the cells of vtkFoamMeshReader first; further cells, such
  * as the faces of the patches, and all arrays are ignored.
  *
  * @sa vtkFoamMeshReader vtkMeshFileWriter tautline::writeFoamPoints
@@ -35,7 +35,7 @@ public:
 
   ///@{
   /**
-   * Whether a file that is replaced is kept beside it as points.orig; one that exists stays. The
+   * Whether to keep a replaced file as points.orig; an existing points.orig is not changed. The
    * default is off.
    */
   vtkSetMacro(KeepOriginal, bool);
@@ -44,7 +44,7 @@ public:
   ///@}
 
   /**
-   * The largest change of a coordinate by files with numbers of 4 bytes, the last time.
+   * The largest change of a coordinate by rounding to 4-byte numbers in the last write.
    */
   double GetRounding() const { return this->Rounding; }
 

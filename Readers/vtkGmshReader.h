@@ -4,11 +4,12 @@
  * @brief Reads Gmsh's .msh 1, 2, 4.0 and 4.1, text and binary, and FreeFem++'s .msh.
  *
  * Cell arrays: `Reference` (physical tag; FreeFem++: label), `Entity` (elementary tag). $NodeData
- * and $ElementData come as arrays of their names. Complete elements of orders 1 to 4, of order 3
- * and 4 as Lagrange cells, and the incomplete ones of second order; others are refused by name.
+ * and $ElementData become arrays with their names. Complete elements of orders 1 to 4 (orders 3 and
+ * 4 as Lagrange cells) and incomplete elements of second order are supported; other elements are an
+ * error that names them.
  *
- * Limits: periodic, ghost and partition data are skipped; of a field with several time steps the
- * last is kept.
+ * Limitations: periodic, ghost and partition data are skipped; only the last of several time steps
+ * of a field is kept.
  *
  * @sa vtkMeshFileReader vtkGmshWriter tautline::readGmsh
  */

@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkGmshWriter
- * @brief Writes Gmsh's .msh 4.1, text or binary, and its .pos.
+ * @brief Writes Gmsh's .msh 4.1, text or binary, and .pos.
  *
- * A file name that ends in `.pos` gives a view for every array instead of a mesh, as text:
- * tautline::writeGmshViews. The rest is about .msh.
+ * A file name with the extension `.pos` gives a view for every array instead of a mesh, as text:
+ * see tautline::writeGmshViews. The following applies to .msh.
  *
- * `Reference` (else `BoundaryMarker`) becomes the physical tag, `Entity` the elementary one; all
- * other numeric arrays become $NodeData and $ElementData, as doubles. Linear and quadratic cells,
- * and Lagrange cells of orders 1 to 4 that are the same along all axes, mixed.
+ * `Reference` (otherwise `BoundaryMarker`) becomes the physical tag, `Entity` the elementary tag;
+ * all other numeric arrays become $NodeData and $ElementData, as doubles. Supports linear and
+ * quadratic cells, and Lagrange cells of orders 1 to 4 that are the same along all axes, also
+ * mixed.
  *
- * Limits: Gmsh itself shows data of 1, 3 or 9 components; others are written all the same.
+ * Limitations: Gmsh itself shows only data with 1, 3 or 9 components; others are nevertheless
+ * written.
  *
  * @sa vtkMeshFileWriter vtkGmshReader tautline::writeGmsh
  */
@@ -27,7 +29,7 @@ public:
 
   ///@{
   /**
-   * Whether numbers are written as bytes, which is smaller and faster. The default is off.
+   * Whether to write binary files, which are smaller and faster. The default is off.
    */
   vtkSetMacro(Binary, bool);
   vtkGetMacro(Binary, bool);

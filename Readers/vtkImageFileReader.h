@@ -3,10 +3,10 @@
  * @class vtkImageFileReader
  * @brief Reads one image: PNG, JPEG, TIFF, BMP, binary PGM or PPM.
  *
- * The format is found by the content of the file, and VTK's reader of the format reads it. A file
- * that is truncated, damaged or of another kind is an error that names the file
- * (ImageFileAdapter.h lists the kinds); so is every message of VTK's reader. An image has at most
- * 100 million pixels.
+ * The format is determined from the content of the file, which is read by VTK's reader for the
+ * format. A file that is truncated, damaged or of another kind is an error that names the file
+ * (ImageFileAdapter.h lists the kinds), and so is every message of VTK's reader. An image has at
+ * most 100 million pixels.
  *
  * The output is vtkImageData in the plane z = 0.
  *
@@ -30,14 +30,14 @@ public:
 
   ///@{
   /**
-   * The file.
+   * The file to read. There is no default.
    */
   vtkSetFilePathMacro(FileName);
   vtkGetFilePathMacro(FileName);
   ///@}
 
   /**
-   * Whether a file begins as one of the formats does.
+   * Whether a file begins like one of the formats.
    */
   static bool CanReadFile(const char* name);
 
@@ -52,7 +52,7 @@ private:
   vtkImageFileReader(const vtkImageFileReader&) = delete;
   void operator=(const vtkImageFileReader&) = delete;
 
-  /// Calls work(file name); its errors become messages. Returns whether there were none.
+  /// Calls work(file name) and reports its errors as messages. Returns whether there were none.
   int Guarded(const std::function<void(const std::string&)>& work);
 
   char* FileName = nullptr;

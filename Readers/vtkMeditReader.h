@@ -3,13 +3,13 @@
  * @class vtkMeditReader
  * @brief Reads Medit's .mesh (text), .meshb (binary, versions 1 to 4) and .sol files.
  *
- * A .mesh or .meshb brings its .sol companion, a .sol its .mesh. Point arrays: `Reference`, `Fixed`
- * (required vertices and corners), `Corner`, fields of the .sol. Cell arrays: `Reference`, `Ridge`,
- * `Required`. Tensors of a .sol become 3 x 3 matrices, row by row, the format of the metric-tensor
- * targets.
+ * A .mesh or .meshb is read with its .sol companion, a .sol with its .mesh. Point arrays:
+ * `Reference`, `Fixed` (required vertices and corners), `Corner`, fields of the .sol. Cell arrays:
+ * `Reference`, `Ridge`, `Required`. Tensors of a .sol become 3 x 3 matrices, row by row, the format
+ * of the metric-tensor targets.
  *
- * Limits: curved (P2) cells are left out, with a warning; binary .solb are not read; normals and
- * tangents are skipped.
+ * Limitations: curved (P2) cells are left out, with a warning; binary .solb files are not
+ * supported; normals and tangents are skipped.
  *
  * @sa vtkMeshFileReader vtkMeditWriter tautline::readMedit
  */

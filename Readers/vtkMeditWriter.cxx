@@ -16,7 +16,7 @@ std::vector<std::string> vtkMeditWriter::WriteMesh(
   if (tautline::splitExtension(name).second == "meshb" && !leftOut.empty())
   {
     vtkWarningMacro(<< name << ": the arrays " << leftOut
-                    << " are left out; .mesh has them in a .sol beside it");
+                    << " are left out; write .mesh, which stores them in a .sol beside it");
   }
   return tautline::writeMedit(mesh, name);
 }

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkMeditWriter
- * @brief Writes Medit's .mesh (text, version 2), with a .sol for the arrays it cannot hold, or
+ * @brief Writes Medit's .mesh (text, version 2), with a .sol for arrays that it cannot hold, or
  * .meshb (binary), without these arrays.
  *
- * `Reference` (else `BoundaryMarker`) is the reference of points and cells, of boundary cells
- * `BoundaryMarker` comes first. `Fixed`, `Corner`, `Ridge`, `Required` become RequiredVertices,
- * Corners, Ridges, RequiredEdges and RequiredTriangles. Planar meshes are written in 2D.
+ * The reference of points and cells is `Reference` (otherwise `BoundaryMarker`); for boundary cells
+ * `BoundaryMarker` takes precedence. `Fixed`, `Corner`, `Ridge`, `Required` become
+ * RequiredVertices, Corners, Ridges, RequiredEdges and RequiredTriangles. Planar meshes are written
+ * in 2D.
  *
- * Limits: linear cells without polygons; cells are sorted by type; field data are not written.
+ * Limitations: only linear cells, without polygons; cells are sorted by type; field data are not
+ * written.
  *
  * @sa vtkMeshFileWriter vtkMeditReader tautline::writeMedit
  */

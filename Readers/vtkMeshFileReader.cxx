@@ -24,7 +24,7 @@
 
 namespace
 {
-/// The piece that is asked for; the whole mesh where nothing is.
+/// The requested piece; the whole mesh if nothing is requested.
 tautline::PartRequest requestedPart(vtkInformation* info)
 {
   using Executive = vtkStreamingDemandDrivenPipeline;
@@ -131,7 +131,8 @@ void vtkMeshFileReader::ReadFile(const tautline::PartRequest& request, vtkDataOb
   catch (const std::bad_alloc& error)
   {
     throw tautline::Error(std::string(this->FileName) + ": " +
-      tautline::errorText(error, "read it where there is more, or a part of the mesh"));
+      tautline::errorText(
+        error, "read it on a machine with more memory, or read a part of the mesh"));
   }
 }
 

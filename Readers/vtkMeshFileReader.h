@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkMeshFileReader
- * @brief Base class of Tautline's mesh readers: the file name, lower-dimensional cells, errors.
+ * @brief Base class of Tautline's mesh readers; handles the file name, lower-dimensional cells and
+ * errors.
  *
- * A subclass names a format. The whole file is read at once and checked; its first error is
- * reported as "file:line: problem" and leaves an empty output. Coordinates are double precision.
- * Array names are the same for all formats (see MeshFile.h): `Fixed`, `BoundaryMarker`,
- * `Reference`.
+ * A subclass implements a format. The whole file is read and checked; its first error is reported
+ * as "file:line: problem" and leaves an empty output. Coordinates are double precision. Array names
+ * are the same for all formats (see MeshFile.h): `Fixed`, `BoundaryMarker`, `Reference`.
  *
- * If a piece of several is requested, the reader takes the whole file into memory and keeps one
- * compact part of the mesh (recursive bisection, see MeshPart.h), with global ids of points and
- * cells and as many layers of ghost cells as are requested.
+ * If one of several pieces is requested, the reader reads the whole file into memory and keeps one
+ * compact part of the mesh (recursive bisection, see MeshPart.h), with global point and cell ids
+ * and the requested number of ghost layers.
  *
- * A request for as many pieces as VTK's global controller has MPI ranks is collective: all ranks
- * must execute the reader. If one of them fails (a missing file, too little memory), all report an
- * error, so that no filter downstream works on an incomplete mesh.
+ * A request is collective if the number of pieces equals the number of MPI ranks of VTK's global
+ * controller: all ranks must execute the reader. If one of them fails (missing file, insufficient
+ * memory), all report an error, so that no downstream filter works on an incomplete mesh.
  *
  * @sa vtkTetGenReader vtkMeditReader vtkGmshReader vtkMfemReader vtkOffReader vtkFoamMeshReader
  * vtkMeshFileWriter
@@ -44,7 +44,7 @@ public:
 
   ///@{
   /**
-   * The file to read. No default.
+   * The file to read. There is no default.
    */
   vtkSetFilePathMacro(FileName);
   vtkGetFilePathMacro(FileName);
@@ -52,9 +52,9 @@ public:
 
   ///@{
   /**
-   * Whether cells of lower dimension than the mesh are kept: boundary triangles beside tetrahedra,
-   * edges beside triangles, with their markers. Off, the output is a mesh every filter can take as
-   * it is. The default is off.
+   * Whether to keep cells of lower dimension than the mesh (boundary triangles beside tetrahedra,
+   * edges beside triangles), with their markers. If off, the output is a mesh that every filter can
+   * process directly. The default is off.
    */
   vtkSetMacro(LowerCells, bool);
   vtkGetMacro(LowerCells, bool);
@@ -62,17 +62,17 @@ public:
   ///@}
 
   /**
-   * What was wrong with the file that was read last; empty if nothing was.
+   * The error message for the last file read; empty if there was no error.
    */
   const char* GetErrorText() const { return this->ErrorText.c_str(); }
 
   /**
-   * Whether the extension and the first bytes are those of a file of this format.
+   * Whether the extension and the first bytes match this format.
    */
   virtual int CanReadFile(const char* name) = 0;
 
   /**
-   * The mesh: a vtkUnstructuredGrid, of vtkOffReader a vtkPolyData.
+   * The mesh: a vtkUnstructuredGrid, or for vtkOffReader a vtkPolyData.
    */
   vtkPointSet* GetOutput();
 

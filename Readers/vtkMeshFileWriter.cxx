@@ -22,7 +22,7 @@ vtkMeshFileWriter::~vtkMeshFileWriter()
 int vtkMeshFileWriter::FillInputPortInformation(int, vtkInformation* info)
 {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
-  // Also other types, so that the message can name the remedy.
+  // Accepts other types as well, so that the message can give the remedy.
   info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataObject");
   return 1;
 }
@@ -70,7 +70,7 @@ void vtkMeshFileWriter::WriteData()
     {
       throw tautline::Error(name + ": the input is a " +
         (this->GetInput() ? this->GetInput()->GetClassName() : "null") +
-        ", and a file holds one mesh: extract a block (Extract Block), or merge the blocks first "
+        ", but a file holds one mesh: extract a block (Extract Block), or merge the blocks first "
         "(Merge Blocks)");
     }
     const std::string problem = tautline::inputProblem(input, { true });

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkMeshFileWriter
- * @brief What Tautline's mesh writers share: a file name, the input, errors.
+ * @brief Base class of Tautline's mesh writers; handles the file name, the input and errors.
  *
- * A subclass names a format. A mesh with cells the format has not is refused, by name and number of
- * the cells, and nothing is written. Numbers have as many digits as it takes to read the same
- * number back. Discretization what was written gives the same mesh with the same arrays, apart from
- * arrays that are not numeric and integers other than 64-bit ones, which come back as 64-bit.
+ * A subclass implements a format. If a mesh has cells that the format does not support, the error
+ * gives their type and number, and nothing is written. Numbers have as many digits as needed to
+ * read back the same number. Reading a written file gives the same mesh with the same arrays,
+ * except for arrays that are not numeric and for integers of other widths, which are read back as
+ * 64-bit integers.
  *
  * @sa vtkTetGenWriter vtkMeditWriter vtkGmshWriter vtkOffWriter vtkFoamPointsWriter
  * vtkMeshFileReader
@@ -35,25 +36,25 @@ public:
 
   ///@{
   /**
-   * The file to write. No default.
+   * The file to write. There is no default.
    */
   vtkSetFilePathMacro(FileName);
   vtkGetFilePathMacro(FileName);
   ///@}
 
   /**
-   * Writes, and returns 1 if all went well, else 0.
+   * Writes the file. Returns 1 on success, otherwise 0.
    */
   int Write() override;
 
   /**
-   * What went wrong the last time; empty if nothing did.
+   * The error message of the last write; empty if there was no error.
    */
   const char* GetErrorText() const { return this->ErrorText.c_str(); }
 
   ///@{
   /**
-   * The files written the last time.
+   * The files of the last write.
    */
   int GetNumberOfFilesWritten() const { return static_cast<int>(this->FilesWritten.size()); }
   const char* GetFileWritten(int i) const { return this->FilesWritten.at(i).c_str(); }
@@ -67,9 +68,9 @@ protected:
   /// overrides this or WriteDataSet().
   virtual std::vector<std::string> WriteMesh(
     const tautline::MeshFile& mesh, const std::string& name);
-  /// The same for a data set that is valid.
+  /// The same for a valid data set.
   virtual std::vector<std::string> WriteDataSet(vtkDataSet* mesh, const std::string& name);
-  /// The file to write, for messages too; throws tautline::Error without one.
+  /// The file to write, also for messages; throws tautline::Error if there is none.
   virtual std::string TargetName();
 
   int FillInputPortInformation(int port, vtkInformation* info) override;

@@ -3,9 +3,9 @@
  * @class vtkMfemReader
  * @brief Reads MFEM's .mesh files, straight or with nodes of order 1 to 6.
  *
- * Versions 1.0, 1.2 and 1.3 are read. Nodes of the spaces H1 and L2 become VTK's quadratic cells
- * with all nodes (order 2) or Lagrange cells. Cell array: `Reference`, the attribute; LowerCells
- * adds the boundary elements. Nonconforming and NURBS meshes are refused.
+ * Versions 1.0, 1.2 and 1.3 are supported. Elements with H1 or L2 nodes become VTK's quadratic
+ * cells with all nodes (order 2) or Lagrange cells. Cell array: `Reference`, the attribute;
+ * LowerCells adds the boundary elements. Nonconforming and NURBS meshes are not supported.
  *
  * @sa vtkMeshFileReader tautline::readMfem
  */

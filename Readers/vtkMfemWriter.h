@@ -3,11 +3,12 @@
  * @class vtkMfemWriter
  * @brief Writes MFEM's .mesh, straight or with nodes of the order of the cells.
  *
- * Linear meshes have vertices, curved ones nodes of H1 or L2. With a template, a file that the mesh
- * was read from, the output is that file with other nodes: space, ordering and all other text stay.
+ * Linear meshes are written with vertices, curved meshes with H1 or L2 nodes. With a template (the
+ * original file of the mesh), the output is this file with new nodes: space, ordering and all other
+ * text are kept.
  *
- * Limits: no lines, polygons, curved pyramids, and no cells whose orders differ by axis; arrays
- * other than `Reference`, the attribute, are not written.
+ * Limitations: lines, polygons, curved pyramids and cells whose orders differ by axis are not
+ * supported; arrays other than `Reference`, the attribute, are not written.
  *
  * @sa vtkMeshFileWriter vtkMfemReader tautline::writeMfem
  */
@@ -24,7 +25,7 @@ public:
 
   ///@{
   /**
-   * Whether neighbors share their nodes (space H1), else each element has its own (L2), as in
+   * Whether neighbors share their nodes (space H1); otherwise each element has its own (L2), as in
    * periodic meshes. The default is on. Not used with a template.
    */
   vtkSetMacro(Continuous, bool);
@@ -34,7 +35,7 @@ public:
 
   ///@{
   /**
-   * A curved file that the mesh was read from, of which only the nodes are replaced. The default is
+   * The original curved file of the mesh, in which only the nodes are replaced. The default is
    * none.
    */
   vtkSetFilePathMacro(TemplateFileName);

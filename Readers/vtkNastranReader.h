@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkNastranReader
- * @brief Reads the mesh of bulk data of Nastran: .bdf, .nas, .fem.
+ * @brief Reads the mesh in Nastran bulk data: .bdf, .nas, .fem.
  *
- * Small, large and free fields, continuation lines, and grid points in systems of coordinates
- * (CORD2R, CORD2C, CORD2S, GRDSET) are read. Cell array: `Reference`, the number of the property.
+ * Small, large and free fields, continuation lines, and grid points in coordinate systems (CORD2R,
+ * CORD2C, CORD2S, GRDSET) are supported. Cell array: `Reference`, the property number.
  *
  * @sa vtkMeshFileReader tautline::readNastran
  */

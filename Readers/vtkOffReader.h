@@ -4,10 +4,10 @@
  * @brief Reads Geomview's OFF, COFF, NOFF and CNOFF files.
  *
  * The output is a vtkPolyData. Point arrays: `Normals` (the active normals), `Color`; cell array:
- * `Color`. Show a colour by choosing `Color` and switching off Map Scalars.
+ * `Color`. To show the colors, choose `Color` and switch off Map Scalars.
  *
- * Limits: binary, 4OFF, nOFF and textured (STOFF) files are refused; entries of a colour map are
- * skipped.
+ * Limitations: binary, 4OFF, nOFF and textured (STOFF) files are not supported; color map entries
+ * are skipped.
  *
  * @sa vtkMeshFileReader vtkOffWriter tautline::readOff
  */

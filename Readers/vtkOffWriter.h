@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkOffWriter
- * @brief Writes OFF, with `Color` (bytes, or doubles up to 1) and `Normals` COFF, NOFF and CNOFF.
+ * @brief Writes OFF files, or with `Color` (bytes, or doubles up to 1) and `Normals` COFF, NOFF and
+ * CNOFF files.
  *
- * Polygons, lines and vertices of any data set; the cell array `Color` gives the faces colours.
+ * Supports polygons, lines and vertices of any data set; the cell array `Color` defines the colors
+ * of faces.
  *
- * Limits: arrays of other names cannot be in an OFF file.
+ * Limitations: OFF files cannot hold other arrays.
  *
  * @sa vtkMeshFileWriter vtkOffReader tautline::writeOff
  */

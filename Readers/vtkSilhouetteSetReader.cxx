@@ -83,7 +83,7 @@ std::vector<Entry> readList(const fs::path& list)
 {
   if (!fs::is_regular_file(list))
   {
-    throw Error(list.string() + ": is not a regular file"); // opening a pipe would wait for ever
+    throw Error(list.string() + ": is not a regular file"); // opening a pipe would wait forever
   }
   std::ifstream stream(list);
   std::string line;
@@ -152,10 +152,10 @@ void addText(vtkImageData* image, const char* name, const std::string& text)
   image->GetFieldData()->AddArray(array);
 }
 
-/// Whole pixels, so that the coordinates within an image are those at the origin, exactly.
+/// Offsets are whole pixels, so that the coordinates within an image are exactly as at the origin.
 void placeSideBySide(vtkMultiBlockDataSet* images)
 {
-  constexpr double gap = 0.1; // of the largest image
+  constexpr double gap = 0.1; // fraction of the largest image
   const unsigned int count = images->GetNumberOfBlocks();
   std::array<double, 2> cell = { 0.0, 0.0 };
   for (unsigned int i = 0; i < count; ++i)
@@ -168,7 +168,7 @@ void placeSideBySide(vtkMultiBlockDataSet* images)
   {
     length = std::ceil((1.0 + gap) * length);
   }
-  // As many columns as make the whole about square.
+  // The number of columns that makes the arrangement about square.
   const double columns = std::ceil(std::sqrt(count * cell[1] / std::max(cell[0], 1.0)));
   for (unsigned int i = 0; i < count; ++i)
   {

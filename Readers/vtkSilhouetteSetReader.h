@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkSilhouetteSetReader
- * @brief Reads a set of labelled images: a list of them in a .csv file, or all images of a folder.
+ * @brief Reads a set of labeled images: listed in a .csv file, or all images in a folder.
  *
  * FileName is one of
- * - a .csv file with a line of column names, of which `file` (relative to the list, or to a folder
- *   `images` beside it) is needed, and `class` or else `class_id`, `label` is the label;
+ * - a .csv file with a line of column names: `file` (relative to the list, or to a folder `images`
+ *   beside it) is required, and `class`, or otherwise `class_id` or `label`, is the label;
  * - a folder: all images in it, in the order of their names; the label is the name up to the first
  *   digit or blank;
  * - an image in such a folder: the same as the folder.
  *
- * Images are those of vtkImageFileReader: PNG, JPEG, TIFF, BMP, binary PGM and PPM, by their
- * content; other files of a folder are skipped. An image that is truncated or damaged, and a file
- * of a list that is no image, is an error that names the file.
+ * The image formats are as in vtkImageFileReader: PNG, JPEG, TIFF, BMP, binary PGM and PPM,
+ * determined by content; other files in a folder are skipped. A truncated or damaged image, and a
+ * listed file that is not an image, is an error that names the file.
  *
- * The output is a vtkMultiBlockDataSet of vtkImageData. The name of a block is that of the file
- * without its ending; field arrays of the image: `Label` and `File`, strings.
+ * The output is a vtkMultiBlockDataSet of vtkImageData. The name of a block is the name of the file
+ * without its extension; each image has the field arrays `Label` and `File` (strings).
  *
  * @sa vtkImageFileReader vtkShapeRetrieval
  */
@@ -34,7 +34,7 @@ public:
 
   ///@{
   /**
-   * The list or the folder.
+   * The list, the folder, or an image in it. There is no default.
    */
   vtkSetFilePathMacro(FileName);
   vtkGetFilePathMacro(FileName);
@@ -42,9 +42,8 @@ public:
 
   ///@{
   /**
-   * Whether the images are placed side by side, by their origins: in rows from the top left, in the
-   * order of the list. Otherwise they lie on top of each other, with their origins in 0. The
-   * default is on.
+   * Whether to place the images side by side, by their origins, in rows from the top left, in the
+   * order of the list. Otherwise they overlap, with their origins at 0. The default is on.
    */
   vtkSetMacro(SideBySide, bool);
   vtkGetMacro(SideBySide, bool);
@@ -52,7 +51,7 @@ public:
   ///@}
 
   /**
-   * Whether the name is that of a folder, or of a list with a column `file`.
+   * Whether the name belongs to a folder, or to a list with a column `file`.
    */
   int CanReadFile(const char* name);
 

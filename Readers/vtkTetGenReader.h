@@ -3,15 +3,17 @@
  * @class vtkTetGenReader
  * @brief Reads the file sets of TetGen and Triangle: .node .ele .face .edge .poly .smesh.
  *
- * Opening any file of a set finds its companions by their common stem: part.1.ele brings
- * part.1.node, and with LowerCells part.1.face and part.1.edge. 2D and 3D, vertices numbered from 0
- * or 1, attributes, markers, comments, second-order elements. .poly and .smesh give the input of a
- * mesher: polygons (2D: segments), with `Holes` and `Regions` in the field data.
+ * Opening any file of a set finds its companions by their common stem: part.1.ele is read with
+ * part.1.node, and with LowerCells also with part.1.face and part.1.edge. Supports 2D and 3D,
+ * vertices numbered from 0 or 1, attributes, markers, comments, and second-order elements. .poly
+ * and .smesh give the input of a mesher: polygons (2D: segments), with `Holes` and `Regions` in the
+ * field data.
  *
  * Point arrays: `BoundaryMarker`, attributes. Cell arrays: `Reference` (the first attribute of the
  * elements), further attributes, `BoundaryMarker` of faces and edges.
  *
- * Limits: .neigh, .vol, .mtr, .var, .b.node are not read; neighbours behind a face are skipped.
+ * Limitations: .neigh, .vol, .mtr, .var, .b.node are not supported; neighbors listed after a face
+ * are skipped.
  *
  * @sa vtkMeshFileReader vtkTetGenWriter tautline::readTetGen
  */

@@ -3,14 +3,14 @@
  * @class vtkTetGenWriter
  * @brief Writes the file sets of TetGen and Triangle.
  *
- * A name that ends with .node, .ele, .face or .edge writes the set: vertices, tetrahedra (planar
- * meshes: triangles), faces, edges, as far as there are any. .poly and .smesh write polygons or
- * segments with `Holes` and `Regions` of the field data. `BoundaryMarker` is the marker (else
- * `Reference` of a point or face), `Reference` the first attribute of an element; all other numeric
- * point and element arrays are attributes, whose names are kept in a comment. Numbering starts at
- * 0.
+ * With the extension .node, .ele, .face or .edge, the whole set is written: vertices, tetrahedra
+ * (planar meshes: triangles), faces and edges, as far as they exist. With .poly and .smesh,
+ * polygons or segments are written, with `Holes` and `Regions` from the field data.
+ * `BoundaryMarker` is the marker (otherwise `Reference` of a point or face), `Reference` the first
+ * attribute of an element; all other numeric point and element arrays are attributes, whose names
+ * are kept in a comment. Numbering starts at 0.
  *
- * Limits: tetrahedra and triangles only; face and edge arrays other than the marker are not
+ * Limitations: only tetrahedra and triangles; face and edge arrays other than the marker are not
  * written.
  *
  * @sa vtkMeshFileWriter vtkTetGenReader tautline::writeTetGen

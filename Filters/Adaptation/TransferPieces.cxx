@@ -8,7 +8,7 @@ namespace tautline
 //------------------------------------------------------------------------------
 TransferMesh joinPieces(std::vector<TransferPiece>& pieces, const CoordinateFrame& frame)
 {
-  int dimension = 2; // without an element
+  int dimension = 2; // no element
   for (const TransferPiece& piece : pieces)
   {
     dimension = std::max(dimension, elementDimension(piece.adapter->mesh().view()));
@@ -36,7 +36,7 @@ void requireSupported(const TransferPiece& piece, const char* which)
   if (mesh.higherOrderCells() > 0)
   {
     throw Error(std::to_string(mesh.higherOrderCells()) + " cells" + where +
-      "of higher order: run Curve Mesh with order 1 first, which makes them linear.");
+      "of higher order: run Curve Mesh with order 1 first to make them linear.");
   }
   if (mesh.polyhedra() > 0)
   {

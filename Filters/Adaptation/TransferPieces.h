@@ -22,10 +22,10 @@ namespace tautline
 struct TransferPiece
 {
   vtkDataSet* given;
-  vtkDataSet* output; ///< null: of the source
-  std::string name;   ///< of the block, or ""
+  vtkDataSet* output; ///< null for the source
+  std::string name;   ///< name of the block, or ""
   std::unique_ptr<MeshAdapter> adapter;
-  vtkIdType first[2] = { 0, 0 }; ///< the number of its first point and cell among all
+  vtkIdType first[2] = { 0, 0 }; ///< global number of its first point and first cell
   JoinedCopies copies;
 
   vtkDataSetAttributes* data(int association) const
@@ -35,16 +35,16 @@ struct TransferPiece
   vtkIdType count(int association) const { return this->given->GetNumberOfElements(association); }
 };
 
-/// The elements of pieces in one frame; sets the numbers of their first points and cells.
+/// Joins the elements of all pieces in one frame; sets the numbers of their first points and cells.
 TransferMesh joinPieces(std::vector<TransferPiece>& pieces, const CoordinateFrame& frame);
 
 /// Throws Error for polyhedra and cells of higher order. @param which "target" or "source"
 void requireSupported(const TransferPiece& piece, const char* which);
 
-/// The frame of the pieces of the target, in which the source is, too.
+/// The frame of the target, which is also used for the source.
 CoordinateFrame frameOf(const std::vector<TransferPiece>& pieces);
 
-/// A sentence on inverted elements, or "". Lists cells in a consistent order.
+/// Makes the order of the cells consistent; returns a sentence on inverted elements, or "".
 std::string describeInverted(std::vector<TransferPiece>& pieces, const char* which);
 }
 #endif

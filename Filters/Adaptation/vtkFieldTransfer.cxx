@@ -40,7 +40,7 @@ enum InputPorts
 constexpr int NumberOfTransferOutputs = 2;
 constexpr const char* TransferName = "Transfer"; // in the menu
 constexpr int Associations[] = { vtkDataObject::POINT, vtkDataObject::CELL };
-/// It is a warning if the target covers less than this part of the source, and totals are kept.
+/// Warns if the target covers less than this fraction of the source and totals are kept.
 constexpr double LeastCovered = 0.9;
 constexpr std::size_t ArraysInSummary = 20;
 constexpr double Percent = 100.0;
@@ -50,13 +50,13 @@ const char* nameOf(int association)
   return association == vtkDataObject::CELL ? "cell" : "point";
 }
 
-/// Whether an array is averaged: it has numbers with fractions.
+/// Whether an array is averaged: arrays of floating-point numbers are.
 bool isAveraged(vtkAbstractArray* array)
 {
   return array->GetDataType() == VTK_DOUBLE || array->GetDataType() == VTK_FLOAT;
 }
 
-/// Ghost marks and ids, which belong to a mesh.
+/// Ghost marks and ids, which are specific to a mesh.
 bool belongsToMesh(vtkDataSetAttributes* data, vtkAbstractArray* array)
 {
   return std::string(array->GetName()) == vtkDataSetAttributes::GhostArrayName() ||
@@ -74,7 +74,7 @@ std::string listed(const std::vector<std::string>& names)
   return text;
 }
 
-/// The values of an array of all pieces.
+/// The values of an array, over all pieces.
 std::vector<double> fieldValuesOf(
   const std::vector<tautline::TransferPiece>& pieces, int association, const std::string& name)
 {
@@ -95,7 +95,7 @@ std::vector<double> fieldValuesOf(
   return values;
 }
 
-/// Names, components and their names of an array of the source.
+/// Copies the name, the components and the component names of an array of the source.
 void copyNames(vtkAbstractArray* from, vtkAbstractArray* to)
 {
   to->SetName(from->GetName());
@@ -109,7 +109,7 @@ void copyNames(vtkAbstractArray* from, vtkAbstractArray* to)
   }
 }
 
-/// Makes an array active as it is in the source, where the target has no active one of that kind.
+/// Makes an array active if it is in the source and the target has no active array of that kind.
 void activate(vtkDataSetAttributes* from, vtkAbstractArray* given, vtkDataSetAttributes* to)
 {
   for (const int kind :
@@ -131,7 +131,7 @@ struct vtkFieldTransfer::Meshes
   tautline::CoordinateFrame frame;
   double sizeUnit = 1.0; ///< of areas or volumes
 
-  /// Where an item of the source is.
+  /// The place of an item of the source.
   std::pair<const tautline::TransferPiece*, vtkIdType> find(int association, vtkIdType number) const
   {
     const int kind = association == vtkDataObject::CELL ? 1 : 0;
@@ -152,7 +152,7 @@ struct vtkFieldTransfer::Arrays
     int association;
     std::string name;
     bool averaged;
-    std::size_t field; ///< its number in `fields`, if it is averaged
+    std::size_t field; ///< its index in `fields`, if it is averaged
   };
   std::vector<Entry> entries;
   std::vector<tautline::TransferField> fields;
@@ -271,7 +271,7 @@ void vtkFieldTransfer::Compute(
   options.frame = meshes.frame;
   options.threads = this->Threads;
   {
-    constexpr double computed = 0.9; // the rest is output
+    constexpr double computed = 0.9; // the rest of the progress is output
     const tautline::ProgressStep progress(this, 0.0, computed);
     arrays.result =
       tautline::transferFields(std::move(target), std::move(from), arrays.fields, options);
@@ -305,7 +305,7 @@ std::vector<std::string> vtkFieldTransfer::NamesOf(const Meshes& meshes, int ass
   for (const std::string& name :
     association == vtkDataObject::CELL ? this->CellArrays : this->PointArrays)
   {
-    // ParaView chooses all arrays by default, also marks of ghosts, which a gathered mesh has not.
+    // ParaView selects all arrays by default, including ghost marks, which a gathered mesh lacks.
     vtkAbstractArray* array = first ? first->GetAbstractArray(name.c_str()) : nullptr;
     if (name != vtkDataSetAttributes::GhostArrayName() && !(array && belongsToMesh(first, array)))
     {
@@ -390,7 +390,7 @@ void vtkFieldTransfer::ChooseArrays(const Meshes& meshes, Arrays& arrays)
         piece.data(vtkDataObject::CELL)->GetNumberOfArrays() >
         0;
     });
-  this->Warn(some ? "" : "The source has no array: nothing is transferred. Choose another source.");
+  this->Warn(some ? "" : "The source has no arrays to transfer. Choose another source.");
 }
 
 //------------------------------------------------------------------------------
@@ -470,7 +470,7 @@ void vtkFieldTransfer::Report(const Meshes& meshes, const Arrays& arrays)
       {
         throw tautline::Error("The total of the " + std::string(nameOf(entry.association)) +
           " array " + entry.name +
-          " is beyond the range of double precision: scale it, by Calculator.");
+          " is beyond the range of double precision: scale it with Calculator.");
       }
       rows.begin();
       rows.addText("Array", entry.name);
@@ -529,21 +529,20 @@ void vtkFieldTransfer::DescribeCoverage(const Arrays& arrays)
          << Percent * this->TargetCovered << " % of the target.";
     if (this->LargestExcess > 0.0)
     {
-      text
-        << " To keep the totals, values next to where only one of them is were changed by up to "
-        << this->LargestExcess
-        << " of the largest absolute value beyond their bounds; without Keep Total they are not.";
+      text << " To keep the totals, values where only one of the meshes has elements were changed "
+              "by up to "
+           << this->LargestExcess
+           << " of the largest absolute value beyond their bounds; switch Keep Total off to stay "
+              "within them.";
     }
     this->AddToSummary(text.str());
     std::ostringstream warning;
     if (this->KeepTotal && !arrays.fields.empty() && this->SourceCovered < LeastCovered)
     {
-      warning
-        << "The target covers only " << Percent * this->SourceCovered << " % of the source: "
-        << (result.totalsKept
-               ? "the totals of all of it are kept. Switch Keep Total off to leave out what is "
-                 "outside."
-               : "the totals are not kept.");
+      warning << "The target covers only " << Percent * this->SourceCovered << " % of the source: "
+              << (result.totalsKept ? "the totals of the whole source are kept. Switch Keep Total "
+                                      "off to leave out the part outside."
+                                    : "the totals are not kept.");
     }
     else if (this->KeepTotal && !arrays.fields.empty() && !result.totalsKept)
     {
@@ -556,7 +555,7 @@ void vtkFieldTransfer::DescribeCoverage(const Arrays& arrays)
   {
     this->AddToSummary(std::to_string(result.nearestCells) + " elements and " +
       std::to_string(result.nearestPoints) +
-      " points of the target, which nothing of the source overlaps, have the nearest value.");
+      " points of the target that the source does not overlap have the nearest value.");
   }
   if (!arrays.replaced.empty())
   {
@@ -564,11 +563,12 @@ void vtkFieldTransfer::DescribeCoverage(const Arrays& arrays)
   }
   if (!arrays.kept.empty())
   {
-    this->AddToSummary("Not transferred, as the target has one: " + listed(arrays.kept) + ".");
+    this->AddToSummary(
+      "Not transferred, because the target already has them: " + listed(arrays.kept) + ".");
   }
   if (!arrays.lacking.empty())
   {
-    this->AddToSummary("Not transferred, as only some blocks of the source have one: " +
+    this->AddToSummary("Not transferred, because only some blocks of the source have them: " +
       listed(arrays.lacking) + ".");
   }
 }

@@ -1,57 +1,58 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkFieldTransfer
- * @brief Transfers point and cell arrays from one mesh to another, conservative and bounded.
+ * @brief Transfers point and cell arrays from one mesh to another, conservatively and within
+ * bounds.
  *
  * The output is the target with fields of the source. With Method CONSERVATIVE
  *
- * - a cell has the mean of what it overlaps, weighted by the area or volume in common;
- * - points have the L2 projection of the piecewise linear field, limited by flux-corrected
- *   transport, so that each value is within the range of the elements that its own elements
- *   overlap (tautline/Adaptation/FieldTransfer.h).
+ * - a cell gets the mean of the cells it overlaps, weighted by the area or volume in common;
+ * - points get the L2 projection of the piecewise linear field, limited by flux-corrected transport
+ *   so that each value stays within the range of the source elements that its elements overlap
+ *   (tautline/Adaptation/FieldTransfer.h).
  *
- * The total, which is the integral over the elements, equals the total of the source to 1e-12,
- * relative to the integral of the absolute value. Arrays of integers (tags, regions, ids) and of
- * strings are never averaged: a cell has the value of the cell that it overlaps most, a point the
- * value of the nearest point. With INTERPOLATE points have the value at their place, cells the
- * value of the cell at their center; totals are not kept.
+ * The total (the integral over the elements) equals the total of the source to 1e-12, relative to
+ * the integral of the absolute value. Arrays of integers (tags, regions, ids) and of strings are
+ * never averaged: a cell gets the value of the cell that it overlaps most, a point the value of the
+ * nearest point. With INTERPOLATE, a point gets the value interpolated at its position, a cell the
+ * value of the source cell at its center; totals are not kept.
  *
- * Takes triangles, quadrilaterals, polygons, tetrahedra, hexahedra, wedges and pyramids, also
- * mixed, which are divided into simplices; the area or volume of inverted ones is their absolute
- * value. Both meshes are planar, surfaces or volumes. Triangles of surfaces are seen along the
- * normal of the triangle of the target. Cells of lower dimension, ghost cells, and elements without
- * an area or volume do not count; they have the nearest value. So have elements and points of the
- * target that nothing of the source overlaps.
+ * Supports triangles, quadrilaterals, polygons, tetrahedra, hexahedra, wedges and pyramids, also
+ * mixed. They are divided into simplices; inverted ones count with the absolute value of their area
+ * or volume. The meshes are both planar, both surfaces or both volumes. On surfaces, the triangles
+ * of the source are projected along the normal of the target triangle. Cells of lower dimension,
+ * ghost cells, and elements without an area or volume do not count; they get the nearest value, as
+ * do elements and points of the target that the source does not overlap.
  *
- * The blocks of composite data are one mesh together, of the target as of the source.
+ * The blocks of composite data form one mesh, in the target as in the source.
  *
- * @par Where only one of the meshes has a place:
- * As at boundaries that differ, totals and bounds may contradict each other: a constant on a
- * smaller mesh has another total. With KeepTotal the totals are kept: the values next to such
+ * @par Where only one mesh has elements:
+ * Where the boundaries differ, totals and bounds may contradict each other: a constant field on a
+ * smaller mesh has a different total. With KeepTotal the totals are kept: the values next to such
  * places change, within their bounds if these suffice, otherwise all by the same amount. The
- * summary and the table state how far they are then beyond. If one of the meshes covers less than
- * half of the other, the totals are not kept, with a warning. Without KeepTotal all values are
- * bounded.
+ * summary and the table then report the distance from the bounds. If one of the meshes covers less
+ * than half of the other, the totals are not kept, and a warning is added. Without KeepTotal all
+ * values are bounded.
  *
  * @par Input port 0 `Input`:
- * The target: the output has its points and cells.
+ * The target, whose points and cells the output has.
  *
  * @par Input port 1 `Source`:
  * The mesh with the fields.
  *
  * @par Output port 0 `Mesh`:
- * The target with the arrays of the source: in double precision, those that are not averaged in
- * their own type. Without a choice, all arrays are transferred. Ghost marks, global ids and
- * pedigree ids are not. Arrays with values that are not finite are left out with a warning.
+ * The target with the arrays of the source: averaged arrays in double precision, the others in
+ * their own type. If no arrays are named, all are transferred, except ghost marks, global ids and
+ * pedigree ids. Arrays with values that are not finite are left out with a warning.
  *
  * @par Output port 1 `Totals`:
- * A row for each component that is averaged: Array, Data (point or cell), Component, TotalBefore,
- * TotalAfter, MinimumBefore, MaximumBefore, MinimumAfter, MaximumAfter, BeyondBounds (how far a
- * value is outside of the values that it comes from).
+ * A vtkTable with a row for each averaged component: Array, Data (point or cell), Component,
+ * TotalBefore, TotalAfter, MinimumBefore, MaximumBefore, MinimumAfter, MaximumAfter, BeyondBounds
+ * (largest distance of a value from the range of its source values).
  *
  * @par Errors:
- * Meshes that do not overlap or differ in their dimension, without elements, with polyhedra or
- * cells of higher order; arrays that are chosen and not there; no array whose values are finite.
+ * The meshes do not overlap, differ in dimension, have no elements, or have polyhedra or cells of
+ * higher order; a chosen array is missing; no array has finite values.
  *
  * @par Several processes:
  * The pieces of both meshes are gathered on the first process.
@@ -93,7 +94,7 @@ public:
     INTERPOLATE = 1
   };
   ///@{
-  /// How values are computed, see above. The default is CONSERVATIVE.
+  /// The method that computes the values, see above. The default is CONSERVATIVE.
   vtkTautlineSetRangeMacro(Method, int, CONSERVATIVE, INTERPOLATE);
   vtkGetMacro(Method, int);
   ///@}
@@ -105,18 +106,18 @@ public:
   };
   ///@{
   /**
-   * What a cell array is within a cell of the source, with CONSERVATIVE. CONSTANT, the default: of
-   * first order, bounded by the cells that are overlapped. LINEAR: a linear function by least
-   * squares with the limiter of Barth and Jespersen, of second order away from extrema and the
-   * boundary, bounded by these cells and the cells that share a point with them.
+   * The reconstruction of a cell array within a source cell, with CONSERVATIVE. CONSTANT, the
+   * default, is first order and bounded by the overlapped cells. LINEAR is a least-squares linear
+   * function with the limiter of Barth and Jespersen; it is second order away from extrema and the
+   * boundary, and bounded by these cells and the cells that share a point with them.
    */
   vtkTautlineSetRangeMacro(CellOrder, int, CONSTANT, LINEAR);
   vtkGetMacro(CellOrder, int);
   ///@}
 
   ///@{
-  /// Whether the totals are kept where only one of the meshes has a place, see above; with
-  /// CONSERVATIVE. The default is on.
+  /// Whether to keep the totals where only one mesh has elements, see above; with CONSERVATIVE. The
+  /// default is on.
   vtkSetMacro(KeepTotal, bool);
   vtkGetMacro(KeepTotal, bool);
   vtkBooleanMacro(KeepTotal, bool);
@@ -124,8 +125,8 @@ public:
 
   ///@{
   /**
-   * The names of the arrays of the source to transfer. If neither a point array nor a cell array is
-   * named, the default, all are.
+   * The names of the source arrays to transfer. By default no point or cell array is named, and all
+   * are transferred.
    */
   void AddPointArray(const char* name);
   void ClearPointArrays();
@@ -134,8 +135,8 @@ public:
   ///@}
 
   ///@{
-  /// Whether an array of the target with the name of a transferred one is replaced; otherwise it
-  /// stays, and the one of the source is not transferred. The default is on.
+  /// Whether a transferred array replaces a target array of the same name; otherwise the source
+  /// array is not transferred. The default is on.
   vtkSetMacro(ReplaceArrays, bool);
   vtkGetMacro(ReplaceArrays, bool);
   vtkBooleanMacro(ReplaceArrays, bool);
@@ -143,8 +144,8 @@ public:
 
   ///@{
   /**
-   * Whether points of the target with the same coordinates on facets that match are treated as one,
-   * as on the seams of a mesh in pieces; the output keeps them all. The default is on. See
+   * Whether to treat points of the target with the same coordinates on matching facets as one, for
+   * example on the seams of a mesh in pieces; the output keeps them all. The default is on. See
    * tautline/Mesh/CoincidentPoints.h.
    */
   vtkSetMacro(MergeCoincidentPoints, bool);
@@ -155,8 +156,8 @@ public:
   ///@{
   /**
    * Results of the last execution. TotalError: the largest difference of a total, over the integral
-   * of the absolute value. LargestExcess: how far a value is beyond its bounds at most, over the
-   * largest absolute value of the field. SourceCovered and TargetCovered: the part of each mesh
+   * of the absolute value. LargestExcess: the largest distance of a value from its bounds, over the
+   * largest absolute value of the field. SourceCovered and TargetCovered: the fraction of each mesh
    * that the other one covers, 0 to 1; 0 with INTERPOLATE.
    */
   vtkGetMacro(TotalError, double);
@@ -165,7 +166,7 @@ public:
   vtkGetMacro(TargetCovered, double);
   ///@}
 
-  /// The output Totals.
+  /// The table of output port 1, Totals.
   vtkTable* GetTotals() { return this->GetOutputTable(1); }
 
 protected:

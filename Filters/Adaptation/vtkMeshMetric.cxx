@@ -50,10 +50,10 @@ enum InputArrays
 constexpr const char* FilterName = "Metric Tensor"; // in the menu
 constexpr int TensorComponents = 6, MatrixComponents = 9;
 
-/// What stands for 0, over the diagonal of the bounding box.
+/// The fractions of the diagonal of the bounding box that a value of 0 stands for.
 constexpr double AutomaticSmallest = 1e-6, AutomaticLargest = 0.1, AutomaticDetail = 1e-3;
 
-/// The values of an array, `components` of each tuple, times a factor.
+/// The values of an array, `components` per tuple, times a factor.
 std::vector<double> valuesOf(
   vtkDataArray* array, const std::vector<int>& components, double factor = 1.0)
 {
@@ -69,7 +69,7 @@ std::vector<double> valuesOf(
   return values;
 }
 
-/// The same of an array of one component.
+/// The same for an array with one component.
 std::vector<double> scalarsOf(vtkDataArray* array, const char* purpose, double factor)
 {
   if (array->GetNumberOfComponents() != 1)
@@ -80,7 +80,7 @@ std::vector<double> scalarsOf(vtkDataArray* array, const char* purpose, double f
   return valuesOf(array, { 0 }, factor);
 }
 
-/// Sizes or metric tensors in another unit of length.
+/// Converts sizes or metric tensors to another unit of length.
 tautline::PointSizes sizesOf(
   vtkDataArray* array, const char* purpose, double unit, std::vector<double>& values)
 {
@@ -102,7 +102,7 @@ tautline::PointSizes sizesOf(
   return { values.data(), TensorComponents };
 }
 
-/// A new array of one number per ellipsoid, for all its points.
+/// A new array with one number per ellipsoid, repeated for all its points.
 template <class Array, class Value>
 void addEllipsoidArray(
   vtkPolyData* output, const char* name, const std::vector<Value>& values, std::size_t pointsOfEach)
@@ -153,7 +153,7 @@ void addTensors(
     if (!std::isfinite(entry) || (ofDiagonal && entry < DBL_MIN)) // smaller ones lose digits
     {
       throw tautline::Error("The inverse squares of the sizes are beyond the range of double "
-                            "precision: scale the mesh, by Transform.");
+                            "precision: scale the mesh with Transform.");
     }
     array->SetValue(static_cast<vtkIdType>(i), entry);
   }
@@ -272,7 +272,7 @@ void vtkMeshMetric::Compute(
   if (mesh.higherOrderCells() > 0)
   {
     throw tautline::Error(std::to_string(mesh.higherOrderCells()) +
-      " cells are of higher order: run Curve Mesh with order 1 first, which makes them linear.");
+      " cells are of higher order: run Curve Mesh with order 1 first to make them linear.");
   }
   const std::string oriented = adapter.orient(nullptr, false);
   const tautline::ProgressStep progress(
@@ -311,7 +311,7 @@ tautline::MetricOptions vtkMeshMetric::MakeOptions(
   const double diagonal = tautline::diagonalOf(adapter.mesh().view());
   if (!(diagonal > 0.0))
   {
-    throw tautline::Error("All points are at one place: give a mesh with an extent.");
+    throw tautline::Error("All points coincide: give a mesh with an extent.");
   }
   const auto length = [&](double given, double automatic)
   { return given > 0.0 ? given / unit : automatic * diagonal; };
@@ -335,7 +335,7 @@ tautline::MetricOptions vtkMeshMetric::MakeOptions(
     this->TangentialRatio };
   options.limits = { length(this->SmallestSize, AutomaticSmallest),
     length(this->LargestSize, AutomaticLargest), this->LargestAnisotropy };
-  // A size that is given goes before one that is not.
+  // A given size takes precedence over a default one.
   if (this->LargestSize == 0.0)
   {
     options.limits.largest = std::max(options.limits.largest, options.limits.smallest);

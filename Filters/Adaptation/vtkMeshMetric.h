@@ -1,53 +1,53 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkMeshMetric
- * @brief Computes a metric tensor per point, which states the target lengths of edges there.
+ * @brief Computes a metric tensor per point, which defines the target edge lengths there.
  *
  * In a metric tensor M the length of an edge e is sqrt(e . M e). Along a principal axis with
  * eigenvalue v, the target size is 1 / sqrt(v). The tensors come from a Source:
  *
  * - SIZES: an array of sizes, or of metric tensors;
  * - HESSIAN: the metric with the least interpolation error of a field in the L^p norm, for a number
- *   of elements, a complexity or an error (tautline/Adaptation/LpMetric.h); where the field has
- *   several components, by the intersection of their Hessians;
+ *   of elements, a complexity or an error (tautline/Adaptation/LpMetric.h); if the field has
+ *   several components, the metrics of their Hessians are intersected;
  * - CURVATURE: sqrt(8 ChordError R) along each principal direction of curvature with the radius R,
- *   at points of the boundary of a volume, of a surface, or of the border of a planar mesh; inside
- *   the largest size (tautline/Adaptation/CurvatureMetric.h);
- * - DISTANCE: layers at a wall, whose size grows by a factor from one to the next along the
- *   gradient of the distance (tautline/Adaptation/DistanceMetric.h).
+ *   at points of the boundary of a volume, of a surface, or of the border of a planar mesh;
+ *   elsewhere the largest size (tautline/Adaptation/CurvatureMetric.h);
+ * - DISTANCE: layers at a wall, whose thickness grows by a constant factor along the gradient of
+ *   the distance (tautline/Adaptation/DistanceMetric.h).
  *
- * Then they are intersected with a second array of metrics, if there is one (so that filters can be
- * chained), the sizes are limited, and Gradation limits the growth of sizes between neighbors
- * (tautline/Adaptation/MetricFields.h).
+ * The tensors are then intersected with a second array of metrics, if one is given (so that filters
+ * can be chained), the sizes are limited, and Gradation limits the growth of sizes between
+ * neighbors (tautline/Adaptation/MetricFields.h).
  *
- * Takes triangles, quadrilaterals, tetrahedra, hexahedra, wedges and pyramids, also mixed. In a
- * planar mesh or on a surface, the size along the normal is the larger one of the two in the plane:
- * it changes no ratio and no smallest size. Points without an element have the largest size.
+ * Supports triangles, quadrilaterals, tetrahedra, hexahedra, wedges and pyramids, also mixed. In a
+ * planar mesh or on a surface, the size along the normal is the larger of the two in-plane sizes,
+ * so that it affects neither the anisotropy nor the smallest size. Points without an element get
+ * the largest size.
  *
- * @par Input arrays (SetInputArrayToProcess, all of points):
- * 0 sizes, of one component, or metric tensors of six (xx yy zz xy yz xz) or nine, for SIZES; 1 the
- * field, for HESSIAN; 2 the distance and 3 the wall, for DISTANCE: without a distance it is the one
- * along a straight line from the facets of the boundary whose points all have a value other than 0
- * in 3, or from the whole boundary; 4 the metrics to intersect with, as 0.
+ * @par Input arrays (SetInputArrayToProcess, all point arrays):
+ * 0 for SIZES: sizes (one component), or metric tensors with six (xx yy zz xy yz xz) or nine
+ * components; 1 the field, for HESSIAN; 2 the distance and 3 the wall, for DISTANCE: without a
+ * distance array, the straight-line distance to the boundary facets whose points all have a nonzero
+ * value in 3, or to the whole boundary; 4 the metrics to intersect with, in the format of 0.
  *
  * @par Output port 0 `Mesh`:
- * The input with the point array ArrayName: six components xx yy zz xy yz xz, in double precision.
- * It is the active tensor array. Element Quality and Optimize Mesh take it as target tensor,
- * Improve Mesh as target lengths.
+ * The input with the point array ArrayName: six components (xx yy zz xy yz xz) in double precision.
+ * It is the active tensor array. Element Quality and Optimize Mesh use it as the target tensor,
+ * Improve Mesh for its target lengths.
  *
  * @par Output port 1 `Ellipsoids`:
- * A vtkPolyData with ellipsoids at some of the points, evenly spread, whose semi-axes are the sizes
- * times EllipsoidScale; in planar meshes and on surfaces they are flat. Point arrays `Size`
- * (geometric mean of the sizes), `Anisotropy` (largest over smallest size) and `PointId` (in its
- * block).
+ * A vtkPolyData with ellipsoids at evenly spread points, whose semi-axes are the sizes times
+ * EllipsoidScale; in planar meshes and on surfaces they are flat. Point arrays: `Size` (geometric
+ * mean of the sizes), `Anisotropy` (largest over smallest size) and `PointId` (within its block).
  *
  * @par Limitations:
- * Each block of composite data has a metric of its own, and the target holds for each. Cells of
- * higher order are refused. Lengths are in double precision; where sizes squared leave its range,
- * as in meshes of 1e-160, it is an error.
+ * Each block of composite data gets its own metric, and the target applies to each block. Cells of
+ * higher order are not supported. Lengths are in double precision; squared sizes beyond its range,
+ * for example in a mesh with a diagonal of 1e-160, are an error.
  *
  * @par Several processes:
- * The pieces are gathered on the first process; results do not depend on how the mesh is cut.
+ * The pieces are gathered on the first process; results do not depend on how the mesh is divided.
  *
  * @par Example:
  * @code
@@ -100,7 +100,7 @@ public:
     DISTANCE = 3
   };
   ///@{
-  /// Where the tensors come from, see above. The default is CURVATURE, which needs no array.
+  /// The source of the tensors, see above. The default is CURVATURE, which needs no array.
   vtkTautlineSetRangeMacro(Source, int, SIZES, DISTANCE);
   vtkGetMacro(Source, int);
   ///@}
@@ -112,9 +112,9 @@ public:
   };
   ///@{
   /**
-   * How the Hessian is found. QUADRATIC_FIT, the default: a quadratic through the values at the
-   * neighbors, by least squares. DOUBLE_PROJECTION: gradients of the elements, averaged twice;
-   * smoother, for triangles and tetrahedra only. See tautline/Adaptation/FieldDerivatives.h.
+   * The recovery of the Hessian. QUADRATIC_FIT, the default: a least-squares quadratic fit to the
+   * values at the neighbors. DOUBLE_PROJECTION: element gradients, averaged twice; smoother, for
+   * triangles and tetrahedra only. See tautline/Adaptation/FieldDerivatives.h.
    */
   vtkTautlineSetRangeMacro(Recovery, int, QUADRATIC_FIT, DOUBLE_PROJECTION);
   vtkGetMacro(Recovery, int);
@@ -122,8 +122,8 @@ public:
 
   ///@{
   /**
-   * The exponent p of the L^p norm of the error, at least 1; infinity, or 0: the largest error.
-   * Small exponents resolve weak features beside strong ones. The default is 2.
+   * The exponent p of the L^p norm of the error, at least 1; infinity or 0 stands for the maximum
+   * error. Small exponents also resolve weak features beside strong ones. The default is 2.
    */
   vtkTautlineSetRangeMacro(Norm, double, 0.0, std::numeric_limits<double>::max());
   vtkGetMacro(Norm, double);
@@ -137,9 +137,9 @@ public:
   };
   ///@{
   /**
-   * What the sizes of HESSIAN are chosen for. NUMBER_OF_ELEMENTS, the default, and COMPLEXITY: of
-   * the final metric, after intersection, limits and gradation, to 1 % where these allow it.
-   * INTERPOLATION_ERROR: in the unit of the field, before them.
+   * The target quantity of HESSIAN. NUMBER_OF_ELEMENTS, the default, and COMPLEXITY apply to the
+   * final metric, after intersection, limits and gradation, to within 1 % where these allow it.
+   * INTERPOLATION_ERROR is in the unit of the field and applies before these steps.
    */
   vtkTautlineSetRangeMacro(Target, int, NUMBER_OF_ELEMENTS, INTERPOLATION_ERROR);
   vtkGetMacro(Target, int);
@@ -153,8 +153,8 @@ public:
 
   ///@{
   /**
-   * With CURVATURE: how far the middle of an edge may be from the surface, at least 0; 0, the
-   * default, is a thousandth of the diagonal of the bounding box.
+   * With CURVATURE: the largest distance between the middle of an edge and the surface, at least 0;
+   * 0, the default, stands for a thousandth of the diagonal of the bounding box.
    */
   vtkTautlineSetRangeMacro(ChordError, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(ChordError, double);
@@ -170,7 +170,7 @@ public:
   ///@{
   /**
    * With DISTANCE: the size at the wall along the gradient of the distance, at least 0; 0, the
-   * default, is a thousandth of the diagonal of the bounding box.
+   * default, stands for a thousandth of the diagonal of the bounding box.
    */
   vtkTautlineSetRangeMacro(WallSize, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(WallSize, double);
@@ -184,20 +184,22 @@ public:
   ///@}
 
   ///@{
-  /// With DISTANCE: the size across the gradient at the wall over that along it, at least 1. The
-  /// default is 1.
+  /// With DISTANCE: the ratio of the size across the gradient to the size along it, at the wall, at
+  /// least 1. The default is 1.
   vtkTautlineSetRangeMacro(TangentialRatio, double, 1.0, VTK_DOUBLE_MAX);
   vtkGetMacro(TangentialRatio, double);
   ///@}
 
   ///@{
-  /// The smallest size, at least 0; 0, the default, is 1e-6 of the diagonal of the bounding box.
+  /// The smallest size, at least 0; 0, the default, stands for 1e-6 of the diagonal of the bounding
+  /// box.
   vtkTautlineSetRangeMacro(SmallestSize, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(SmallestSize, double);
   ///@}
 
   ///@{
-  /// The largest size, at least 0; 0, the default, is a tenth of the diagonal of the bounding box.
+  /// The largest size, at least 0; 0, the default, stands for a tenth of the diagonal of the
+  /// bounding box.
   vtkTautlineSetRangeMacro(LargestSize, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(LargestSize, double);
   ///@}
@@ -211,7 +213,7 @@ public:
   ///@{
   /**
    * The largest growth factor of sizes between neighbors, above 1: isotropic sizes grow at most by
-   * its logarithm times the distance. 0: no limit. The default is 1.5.
+   * its logarithm times the distance. 0 means no limit. The default is 1.5.
    */
   vtkTautlineSetRangeMacro(Gradation, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(Gradation, double);
@@ -224,7 +226,7 @@ public:
   ///@}
 
   ///@{
-  /// How many ellipsoids there are at most, of all blocks, at least 0. The default is 500.
+  /// The maximum number of ellipsoids, over all blocks, at least 0. The default is 500.
   vtkTautlineSetRangeMacro(MaximumEllipsoids, int, 0, 1000000);
   vtkGetMacro(MaximumEllipsoids, int);
   ///@}
@@ -238,7 +240,7 @@ public:
 
   ///@{
   /**
-   * Whether points with the same coordinates on facets that match are treated as one, as on the
+   * Whether to treat points with the same coordinates on matching facets as one, for example on the
    * seams of a mesh in pieces; the output keeps them all. The default is on. See
    * tautline/Mesh/CoincidentPoints.h.
    */
@@ -249,11 +251,11 @@ public:
 
   ///@{
   /**
-   * Results of the last execution, of all blocks: the complexity, which is the area or volume as
-   * the metric measures it; the number of elements with edges of length 1, which is the complexity
-   * over the area or volume of the ideal element (times 2.31 for triangles, 8.49 for tetrahedra, 1
-   * for quadrilaterals and hexahedra); the smallest and the largest size; the largest quotient of
-   * two sizes at a point.
+   * Results of the last execution, over all blocks: the complexity, which is the area or volume in
+   * the metric; the number of elements with edges of length 1, which is the complexity over the
+   * area or volume of the ideal element (times 2.31 for triangles, 8.49 for tetrahedra, 1 for
+   * quadrilaterals and hexahedra); the smallest and the largest size; the largest quotient of two
+   * sizes at a point.
    */
   vtkGetMacro(Complexity, double);
   vtkGetMacro(Elements, double);
@@ -262,7 +264,7 @@ public:
   vtkGetMacro(AnisotropyFound, double);
   ///@}
 
-  /// The output Ellipsoids.
+  /// The data of output port 1, Ellipsoids.
   vtkPolyData* GetEllipsoids();
 
 protected:
@@ -281,7 +283,7 @@ private:
   vtkMeshMetric(const vtkMeshMetric&) = delete;
   void operator=(const vtkMeshMetric&) = delete;
 
-  /// Arrays of a block as the kernel takes them, in the unit of its frame.
+  /// The arrays of a block in the kernel's format, in the unit of its frame.
   struct Arrays;
 
   void Compute(

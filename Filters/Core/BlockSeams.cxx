@@ -16,7 +16,7 @@ namespace tautline
 {
 namespace
 {
-/// Whether the box of a data set meets that of another one.
+/// Whether the bounding boxes of two data sets intersect.
 std::vector<char> meetingOthers(const std::vector<vtkDataSet*>& data)
 {
   std::vector<vtkBoundingBox> boxes;
@@ -40,14 +40,14 @@ std::vector<char> meetingOthers(const std::vector<vtkDataSet*>& data)
   return meets;
 }
 
-/// Several meshes as one, without merging any point.
+/// Joins several meshes into one without merging points.
 struct Appended
 {
   std::vector<double> points;
   std::vector<unsigned char> types;
   std::vector<Index> offsets = { 0 };
   std::vector<Index> connectivity;
-  std::vector<unsigned char> reversed; ///< per cell: all cells of its mesh are
+  std::vector<unsigned char> reversed; ///< per cell: whether all cells of its mesh are reversed
 
   void add(const Mesh& mesh, int threads)
   {
@@ -96,7 +96,7 @@ BlockSeams findBlockSeams(
   std::iota(seams.group.begin(), seams.group.end(), 0);
   const std::vector<char> meets = meetingOthers(data);
   Appended all;
-  std::vector<int> blockOf; // of each point of `all`
+  std::vector<int> blockOf; // per point of `all`
   std::vector<Index> firstOf(data.size(), 0);
   for (std::size_t i = 0; i < data.size(); ++i)
   {
@@ -154,7 +154,7 @@ std::string describeBlockSeams(vtkDataObject* input, int threads)
   return seams.points == 0
     ? ""
     : std::to_string(seams.points) + (seams.points == 1 ? " point" : " points") +
-      " of a block coincide with those of another one, the first is " + seams.first +
+      " of a block coincide with points of another one; the first is " + seams.first +
       ". Each block is a mesh of its own here, and a seam between blocks is a boundary of both: "
       "run "
       "Merge Blocks first to treat them as one mesh.";

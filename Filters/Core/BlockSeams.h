@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BlockSeams.h
- * @brief Seams between the data sets of composite data: points at the same place on boundaries that
- * would match.
+ * @brief Seams between the data sets of composite data: coincident points on matching boundaries.
  */
 #ifndef tautline_BlockSeams_h
 #define tautline_BlockSeams_h
@@ -19,10 +18,10 @@ class vtkDataSet;
 
 namespace tautline
 {
-/// What findBlockSeams() found.
+/// The result of findBlockSeams().
 struct BlockSeams
 {
-  /// One per data set: the smallest number of those that are connected with it by seams, or its
+  /// One per data set: the smallest number among the data sets that seams connect it with, or its
   /// own.
   std::vector<int> group;
   Index points = 0;  ///< points of a data set that coincide with one of another data set
@@ -30,17 +29,17 @@ struct BlockSeams
 };
 
 /**
- * @brief Finds the seams between data sets. Those of a single one do not count.
+ * @brief Finds the seams between data sets; seams within a data set do not count.
  * @param names of the data sets, for `first`
  *
- * Throws Error for a mesh that is malformed.
+ * Throws Error if a mesh is malformed.
  */
 TAUTLINECORE_EXPORT BlockSeams findBlockSeams(
   const std::vector<vtkDataSet*>& data, const std::vector<std::string>& names, int threads);
 
 /**
- * @brief A sentence on the seams between the data sets of composite data, which a filter treats one
- * by one, and the remedy; "" if there are none.
+ * @brief A sentence on the seams between the data sets of composite data, which a filter treats
+ * separately, with the remedy; "" if there are none.
  */
 TAUTLINECORE_EXPORT std::string describeBlockSeams(vtkDataObject* input, int threads);
 }

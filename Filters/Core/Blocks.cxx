@@ -26,13 +26,13 @@ namespace tautline
 {
 namespace
 {
-/// Counts through a tree of data sets, with and without the partitions of meshes.
+/// Counts the nodes of a tree of data sets, with and without the partitions of meshes.
 struct PlaceCounter
 {
   std::map<unsigned int, BlockPlace>& places;
   unsigned int flat = 0, block = 0;
 
-  /// What is in the place where both counts are.
+  /// The item at the position of both counts.
   void visit(vtkDataObject* data)
   {
     if (auto* blocks = vtkMultiBlockDataSet::SafeDownCast(data))
@@ -145,7 +145,7 @@ void forEachBlock(vtkDataObject* input, vtkDataObject* reference, vtkDataObject*
     {
       throw Error((name.empty() ? "" : "In " + name + ": ") + error.what());
     }
-    // Not before: an adaptive grid takes no empty data sets.
+    // Not earlier: an adaptive grid accepts no empty data sets.
     results->SetDataSet(walk, result);
   }
 }
@@ -262,8 +262,8 @@ vtkDataArray* chosenArray(
   if (!array && of != ArrayOf::Either && others->GetArray(name))
   {
     throw Error(std::string("The array '") + name + "' " + purpose +
-      (ofCells ? " is on points; one on cells is needed: run Point Data to Cell Data."
-               : " is on cells; one on points is needed: run Cell Data to Point Data."));
+      (ofCells ? " is a point array; a cell array is needed: run Point Data to Cell Data."
+               : " is a cell array; a point array is needed: run Cell Data to Point Data."));
   }
   if (!array)
   {

@@ -29,7 +29,7 @@ void addArray(vtkDataSetAttributes* to, const char* name, const std::vector<Valu
   to->AddArray(array);
 }
 
-/// The kinds in a point array, of points that are one the largest; empty without an array.
+/// The kinds in a point array; merged points get the largest of theirs. Empty without an array.
 std::vector<signed char> kindsOf(vtkDataArray* array, const std::vector<Index>& representative)
 {
   std::vector<signed char> kinds;
@@ -130,7 +130,7 @@ vtkDataArray* BoundarySetup::regionArray() const
 }
 
 //------------------------------------------------------------------------------
-/// The kinds of points that are given, or none.
+/// The given kinds of points, or none.
 std::vector<signed char> BoundarySetup::kinds() const
 {
   return kindsOf(chosenArray(this->Properties.arrays, this->Properties.kindArray, this->Block.input,
@@ -225,9 +225,10 @@ void BoundarySetup::setFeatures()
   const bool keep = this->slidesOnModel() || (this->Properties.keepFeatures && this->regionArray());
   if (this->Properties.geometry && !this->slidesOnModel())
   {
-    throw Error("With a Geometry, points must be able to slide on it: switch Keep Features and "
-                "Project To Surface on and, for volume meshes, let the boundary slide on smooth "
-                "parts.");
+    throw Error(
+      "With a Geometry, points must be able to slide on it: switch Keep Features and "
+      "Project To Surface on and, for volume meshes, allow the boundary to slide on smooth "
+      "parts.");
   }
   if (keep || this->Properties.showFeatures)
   {
@@ -247,7 +248,7 @@ void BoundarySetup::setFeatures()
     this->placePoints();
     return;
   }
-  // The rest of the tolerance is for what the elements between the points cut off.
+  // The rest of the tolerance is left for the chord error of the elements between the points.
   constexpr double shareOfPoints = 0.5;
   const bool surface = this->TheMesh.mesh().dimension() == Dimension::Surface;
   const double tolerance = surface ? this->tolerance() : 0.0;
@@ -257,15 +258,16 @@ void BoundarySetup::setFeatures()
 }
 
 //------------------------------------------------------------------------------
-/// Starts from the points on the geometry; those of elements that would become invalid stay, and
-/// slide as soon as a step takes them there.
+/// Starts with the points on the geometry; points of elements that would become invalid stay in
+/// place, and slide as soon as a step moves them onto it.
 void BoundarySetup::placePoints()
 {
   const Mesh& mesh = this->TheMesh.mesh();
   const MeshView& view = mesh.view();
   const std::vector<signed char>& before = this->TheMesh.validity();
   std::vector<double>& points = this->Match.points;
-  // What goes back may make elements beside it invalid. Each round takes a point back for good.
+  // A point that is moved back may make elements beside it invalid. Each round moves at least one
+  // point back for good.
   for (bool more = true; more;)
   {
     more = false;
@@ -290,7 +292,7 @@ void BoundarySetup::placePoints()
 }
 
 //------------------------------------------------------------------------------
-/// The surface tolerance in the coordinates of the mesh; 0: any distance.
+/// The surface tolerance in the coordinates of the mesh; 0 allows any distance.
 double BoundarySetup::tolerance() const
 {
   const double diagonal = diagonalOf(this->TheMesh.mesh().view());
@@ -315,8 +317,8 @@ void BoundarySetup::setSurfaceTolerance()
 }
 
 //------------------------------------------------------------------------------
-/// The points of the outer surface that are not fixed for other reasons than features, nor features
-/// by the user's choice.
+/// The points of the outer surface that are fixed at most as features, and that the user has not
+/// chosen as features.
 void BoundarySetup::findLeaving()
 {
   if (!this->Properties.leaving || !this->slidesOnModel() || this->HasGeometry)
@@ -353,7 +355,7 @@ void BoundarySetup::findLeaving()
 }
 
 //------------------------------------------------------------------------------
-/// Which points slide on which part of the model, and which stay.
+/// Determines which points slide on which part of the model, and which stay.
 void BoundarySetup::holdPoints()
 {
   const Mesh& mesh = this->TheMesh.mesh();
@@ -364,7 +366,7 @@ void BoundarySetup::holdPoints()
   this->Held = this->TheMesh.fixed();
   BoundaryShape held;
   held.fixed.assign(found.kind.size(), 0);
-  // Points on interfaces slide, but for those on a boundary that moves otherwise.
+  // Points on interfaces slide, except on a boundary that moves in another way.
   std::vector<char> onInterface(found.kind.size(), 0), outside(found.kind.size(), 0);
   for (const Features::Facet& facet : found.facets)
   {
@@ -386,7 +388,7 @@ void BoundarySetup::holdPoints()
     held.fixed[p] = slides ? found.kind[p] == CornerPoint : onInterface[p] && outside[p];
     this->Parts[p] = slides ? this->Parts[p] : -1;
   }
-  // The border of a surface that slides where it is straight stays elsewhere, see setFixed().
+  // The border of a surface that slides on straight parts is fixed elsewhere, see setFixed().
   for (std::size_t i = 0; surface && i < this->Shape.lines.size(); ++i)
   {
     this->Shape.lines[i] = this->Shape.planes[i] = 0;

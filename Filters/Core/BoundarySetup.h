@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BoundarySetup.h
- * @brief From the properties of the group Boundary to the constraints of the kernel, for one data
- * set.
+ * @brief Translates the properties of the group Boundary into the constraints of the kernel, for
+ * one data set.
  */
 #ifndef tautline_BoundarySetup_h
 #define tautline_BoundarySetup_h
@@ -32,49 +32,52 @@ struct BoundaryProperties
   BoundaryMotion motion = BoundaryMotion::Fixed;
   double flatAngle = 1.0;        ///< degrees
   double featureAngle = 40.0;    ///< degrees
-  bool keepFeatures = true;      ///< of surfaces, and where points slide on the boundary
+  bool keepFeatures = true;      ///< on surfaces, and where points slide on the boundary
   bool smoothSurface = true;     ///< slide on a smooth surface through the points, not on facets
   bool projectToSurface = true;  ///< keep the points of a surface in space on it
-  double surfaceTolerance = 0.0; ///< of OnSurface, a fraction of the diagonal; 0: any distance
+  double surfaceTolerance = 0.0; ///< for OnSurface, as a fraction of the diagonal; 0: any distance
   bool leaving = false;          ///< set BoundaryConstraints::leaving
   bool showFeatures = false;     ///< add the arrays of the features to the output
   bool freeInvalid = false;      ///< see MovableMesh::freeInvalid()
-  vtkDataObject* geometry = nullptr; ///< what points slide on instead of the input, or null
-  vtkAlgorithm* arrays = nullptr;    ///< whose input arrays are chosen, by these indices
+  vtkDataObject* geometry = nullptr; ///< the surface to slide on instead of the input's, or null
+  vtkAlgorithm* arrays = nullptr;    ///< the filter whose input arrays are chosen, by these indices
   int fixedArray = 0, kindArray = 0, regionArray = 0;
   int threads = 0;
 };
 
-/// Whether feature kinds or regions are chosen; also arrays that are missing, which others report.
+/// Whether feature kinds or regions are chosen, including missing arrays, which are reported later.
 TAUTLINECORE_EXPORT bool choosesFeatures(const BoundaryProperties& properties, vtkDataSet* input);
 /// @param features whether feature kinds or regions are chosen, on any process
 TAUTLINECORE_EXPORT NeedOfWholeMesh needOfWholeMesh(
   const BoundaryProperties& properties, bool features);
 
-/// The values of an array of one component, or none without one; throws Error if it has more.
+/// The values of an array with one component; empty without an array. Throws Error if it has more
+/// components.
 TAUTLINECORE_EXPORT std::vector<double> scalarsOf(vtkDataArray* array, const char* purpose);
 
 /**
  * @class tautline::BoundarySetup
- * @brief The constraints of a data set, and all that they point to. Throws Error for arrays that
- * are missing or do not fit.
+ * @brief The constraints of a data set, with the data that they point to. Throws Error for arrays
+ * that are missing or do not fit.
  */
 class TAUTLINECORE_EXPORT BoundarySetup
 {
 public:
-  /// @param mesh of the block, framed; outlives the setup; gets the fixed points. Collective if it
-  /// is in pieces, which have no features: the caller refuses what needs these.
+  /// @param mesh of the block, framed; must outlive the setup; receives the fixed points.
+  /// Collective if the mesh is in pieces, for which features are not supported: the caller rejects
+  /// settings that need them.
   BoundarySetup(const BoundaryProperties& properties, const InputBlock& block, MovableMesh& mesh);
   BoundarySetup(const BoundarySetup&) = delete;
   BoundarySetup& operator=(const BoundarySetup&) = delete;
 
-  /// They point to what the setup has.
+  /// They point to data of this object.
   const BoundaryConstraints& constraints() const { return this->Constraints; }
-  /// The mesh where to start: with a geometry, its points are placed on that.
+  /// The initial mesh; if there is a geometry, its points are placed on it.
   const Mesh& start() const { return this->Placed ? *this->Placed : this->TheMesh.mesh(); }
-  /// Adds the arrays `FeatureKind` and `PatchId` of points, of surfaces also `PatchId` of cells.
+  /// Adds the point arrays `FeatureKind` and `PatchId`, and for surfaces also the cell array
+  /// `PatchId`.
   void addFeatures(vtkDataSet* output) const;
-  /// The features found, as a sentence; "" if they were not looked for.
+  /// A sentence on the features found; "" if they were not searched for.
   std::string describeFeatures() const;
 
 private:

@@ -22,7 +22,7 @@ void add(ContentStamp& stamp, vtkObject* object)
   stamp.push_back(object ? object->GetMTime() : 0);
 }
 
-/// The lists of cells may be changed without the cell array.
+/// The connectivity may change without a change of the cell array's own time.
 void addCells(ContentStamp& stamp, vtkCellArray* cells)
 {
   add(stamp, cells);
@@ -30,7 +30,7 @@ void addCells(ContentStamp& stamp, vtkCellArray* cells)
   add(stamp, cells ? cells->GetOffsetsArray() : nullptr);
 }
 
-/// Arrays in their order. The own time of the field data is that of the copy.
+/// Arrays in order. The modification time of the field data itself changes with a copy.
 void addArrays(ContentStamp& stamp, vtkFieldData* fields)
 {
   const int count = fields ? fields->GetNumberOfArrays() : 0;
@@ -90,7 +90,7 @@ void addLeaves(ContentStamp& stamp, vtkCompositeDataSet* blocks)
   at->SkipEmptyNodesOff();
   for (at->InitTraversal(); !at->IsDoneWithTraversal(); at->GoToNextItem())
   {
-    // The place in the tree: a block that moves is another content.
+    // The position in the tree: moving a block changes the content.
     stamp.push_back(static_cast<vtkMTimeType>(at->GetCurrentFlatIndex()));
     addDataSet(stamp, at->GetCurrentDataObject());
   }
@@ -104,7 +104,7 @@ ContentStamp contentStamp(const std::vector<vtkDataObject*>& inputs)
   for (vtkDataObject* data : inputs)
   {
     const std::size_t length = stamp.size();
-    stamp.push_back(0); // becomes the number of entries of this input
+    stamp.push_back(0); // later the number of entries of this input
     if (auto* blocks = vtkCompositeDataSet::SafeDownCast(data))
     {
       addLeaves(stamp, blocks);

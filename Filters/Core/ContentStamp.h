@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ContentStamp.h
- * @brief Whether a data object has the content of another one, without a look at the values.
+ * @brief Tests whether two data objects have the same content, without comparing values.
  */
 #ifndef tautline_ContentStamp_h
 #define tautline_ContentStamp_h
@@ -20,7 +20,7 @@ namespace tautline
 using ContentStamp = std::vector<vtkMTimeType>;
 
 /**
- * @brief The stamp of the inputs of a filter, some of which may be null.
+ * @brief The stamp of the inputs of a filter; inputs may be null.
  *
  * A shallow copy has the stamp of its original, though its own modification time is later: ParaView
  * copies the input of a filter at each time step. Equal stamps mean equal content, because no two

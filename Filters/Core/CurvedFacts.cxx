@@ -19,7 +19,7 @@ CurvedFacts::CurvedFacts(vtkDataSet* input, const MeshAdapter& adapter)
   {
     throw Error("The cell array HigherOrderDegrees has " +
       std::to_string(degrees->GetNumberOfComponents()) +
-      " components; three are expected, the orders along the axes of a cell.");
+      " components; three are expected: the orders along the axes of a cell.");
   }
   if (degrees)
   {

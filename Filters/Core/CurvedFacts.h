@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CurvedFacts.h
- * @brief What a data set states about its curved cells.
+ * @brief The facts that a data set states about its curved cells.
  */
 #ifndef tautline_CurvedFacts_h
 #define tautline_CurvedFacts_h
@@ -22,7 +22,7 @@ class MeshAdapter;
 class TAUTLINECORE_EXPORT CurvedFacts
 {
 public:
-  /// Throws Error if HigherOrderDegrees has other than three components.
+  /// Throws Error if HigherOrderDegrees does not have three components.
   CurvedFacts(vtkDataSet* input, const MeshAdapter& adapter);
   CurvedFacts(const CurvedFacts&) = delete;
   void operator=(const CurvedFacts&) = delete;

@@ -23,7 +23,7 @@ namespace tautline
 {
 namespace
 {
-/// The linear cell of a curved one's corners; other types stay.
+/// The linear type with the corners of a curved one; other types are unchanged.
 int straightType(int vtkType)
 {
   switch (vtkType)
@@ -93,7 +93,7 @@ CurvedMesh::CurvedMesh(vtkDataSet* input, int threads)
     }
     if (type == VTK_LAGRANGE_WEDGE || type == VTK_BEZIER_WEDGE)
     {
-      // These list their triangles from inside, unlike linear ones.
+      // These list the points of their triangles as seen from inside, unlike linear wedges.
       std::swap(*ids->GetPointer(1), *ids->GetPointer(2));
       std::swap(*ids->GetPointer(4), *ids->GetPointer(5));
     }

@@ -24,13 +24,13 @@ class vtkDataSet;
 
 namespace tautline
 {
-/// Whether a data set has cells of quadratic or higher order; of composite data, any data set.
+/// Whether a data set, or any data set of composite data, has cells of quadratic or higher order.
 TAUTLINECORE_EXPORT bool hasCurvedCells(vtkDataObject* input);
 
 /**
  * @class tautline::CurvedMesh
- * @brief Splits a mesh into corners, which a filter moves as those of linear cells, and the nodes
- * between them, which follow as tautline::FollowingNodes has it.
+ * @brief Splits a mesh into the corners, which a filter moves like points of linear cells, and the
+ * nodes between them, which follow the corners, see tautline::FollowingNodes.
  *
  *     CurvedMesh curved(input, threads);
  *     MovableMesh mesh(curved.corners(), threads, true);
@@ -42,26 +42,27 @@ TAUTLINECORE_EXPORT bool hasCurvedCells(vtkDataObject* input);
 class TAUTLINECORE_EXPORT CurvedMesh
 {
 public:
-  /// Throws Error for curved cells that are not supported; names the remedy.
+  /// Throws Error, with the remedy, for curved cells that are not supported.
   CurvedMesh(vtkDataSet* input, int threads);
   ~CurvedMesh();
 
-  /// The same points, and of each cell the linear one of its corners; with the arrays of the input.
+  /// The same points, and for each cell the linear cell of its corners; with the arrays of the
+  /// input.
   vtkUnstructuredGrid* corners() const { return this->Corners; }
 
-  /// Points that are one, of corners(): nodes between them are then one, too. Empty: none are.
+  /// Merges the nodes between merged points of corners(). Empty if no points are merged.
   void join(const std::vector<Index>& representative);
   const FollowingNodes& nodes() const { return *this->Nodes; }
 
-  /// The mesh with all nodes, oriented as MeshAdapter::orient() does, and what belongs to it.
+  /// The mesh with all nodes, oriented as by MeshAdapter::orient(), and its data.
   const Mesh& mesh() const { return this->Adapter.mesh(); }
   const CurvedCellFacts& facts() const { return *this->Facts; }
 
   /**
-   * @brief Replaces the validity of curved cells by that in the whole cell, see
-   * certifyCurvedCells(). That of other cells, and what is NotMeasured, is kept.
+   * @brief Replaces the validity of curved cells by the validity throughout the cell, see
+   * certifyCurvedCells(). Other cells and NotMeasured cells keep their value.
    * @param points 3 coordinates per point
-   * @param validity one per cell, as that of corners()
+   * @param validity one per cell, initially for corners()
    */
   void certify(const std::vector<double>& points, std::vector<signed char>& validity) const;
 

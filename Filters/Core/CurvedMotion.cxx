@@ -19,8 +19,8 @@ CurvedMotion::CurvedMotion(const InputBlock& block, int threads, bool mergePoint
 {
   if (!this->Corners.representative().empty())
   {
-    throw Error("Curved cells have several points at the same place on seams, where all nodes of "
-                "the cells would come apart: run Clean to Grid first.");
+    throw Error("Curved cells have coincident points on seams, where the cells would come apart: "
+                "run Clean to Grid first.");
   }
   this->Corners.certifyBy(this->Cells);
   this->Full = std::make_unique<Mesh>(this->Cells.mesh().at(this->Corners.mesh().view().points));
@@ -28,8 +28,8 @@ CurvedMotion::CurvedMotion(const InputBlock& block, int threads, bool mergePoint
 }
 
 //------------------------------------------------------------------------------
-/// The corners that always stay are known: with them stay all nodes of cells that have no others,
-/// as ghosts and facets inside a volume.
+/// The corners that always stay are known; the nodes of cells with only such corners (ghosts,
+/// facets inside a volume) stay with them.
 void CurvedMotion::fixWhatStays()
 {
   const MeshView& view = this->Full->view();

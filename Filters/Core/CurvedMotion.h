@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CurvedMotion.h
- * @brief A data set with curved cells for filters that move all its nodes.
+ * @brief A data set with curved cells, for filters that move all its nodes.
  */
 #ifndef tautline_CurvedMotion_h
 #define tautline_CurvedMotion_h
@@ -21,31 +21,32 @@ struct InputBlock;
 
 /**
  * @class tautline::CurvedMotion
- * @brief The corners as a MovableMesh, for orientation, validity and output, and the mesh with all
- * nodes in the same frame, for the kernel.
+ * @brief Holds the corners as a MovableMesh (for orientation, validity and output) and the mesh
+ * with all nodes in the same frame (for the kernel).
  */
 class TAUTLINECORE_EXPORT CurvedMotion
 {
 public:
-  /// Throws Error with the remedy as MovableMesh does, and for coincident points on seams.
+  /// Throws Error, with the remedy, as MovableMesh does, and also for coincident points on seams.
   CurvedMotion(const InputBlock& block, int threads, bool mergePoints);
 
   MovableMesh& corners() { return this->Corners; }
   const Mesh& mesh() const { return *this->Full; }
-  /// The facts of the cells and the fixed points; the rest is the default.
+  /// Options with the facts of the cells and the fixed points; the other options have their
+  /// defaults.
   CurvedOptions options() const;
 
-  /// Marks points that stay: those with a value other than 0 in an array (null: none), and those of
-  /// a selection.
+  /// Marks points that stay: points with a nonzero value in an array (null: none) and points of a
+  /// selection.
   void fix(vtkDataArray* array);
   void fixSelected(vtkDataSet* selected);
-  /// Frees the points of invalid elements, however they were fixed, except those that always stay.
+  /// Frees the points of invalid elements, whatever fixed them, except points that always stay.
   void freeInvalid();
 
   /**
    * @brief The patches and curves of a surface, in the frame of the mesh, for
    * CurvedOptions::geometry.
-   * Throws Error with the remedy where it has no facets, or has volume cells.
+   * Throws Error, with the remedy, if it has no facets or has volume cells.
    */
   SurfaceModel geometry(vtkDataObject* surface, double featureAngle, bool smooth) const;
 

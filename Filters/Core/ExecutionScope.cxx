@@ -24,7 +24,7 @@ namespace
 {
 PollHook hookOfProcess = nullptr;
 
-/// The setter of the error code, which is protected.
+/// Gives access to the protected setter of the error code.
 struct ErrorCode : public vtkAlgorithm
 {
   static void set(vtkAlgorithm* algorithm, unsigned long code)
@@ -33,8 +33,8 @@ struct ErrorCode : public vtkAlgorithm
   }
 };
 
-/// Asks for no part of the images among the outputs, which are empty: for one that does not have
-/// the part that is asked for, the executive executes again.
+/// Requests no part of the images among the outputs, which are empty: the executive executes again
+/// for an image that lacks the requested part.
 void askForNothing(vtkInformationVector* outputs)
 {
   using Pipeline = vtkStreamingDemandDrivenPipeline;
@@ -70,7 +70,7 @@ void pollAlgorithm(vtkAlgorithm* algorithm, const ExecutionLimits& limits, const
   {
     std::ostringstream text;
     text << "The time limit of " << limits.seconds
-         << " s is reached: set a higher Time Limit (0 is none), or take a smaller input.";
+         << " s is reached: set a higher Time Limit (0 means none) or use a smaller input.";
     throw Error(text.str());
   }
 }
@@ -126,7 +126,7 @@ int processInScope(vtkAlgorithm* algorithm, const ExecutionLimits& limits, vtkIn
         output->Initialize();
       }
     }
-    // A filter that executes itself once per time step ends here.
+    // Ends a filter that executes itself once per time step.
     request->Remove(vtkStreamingDemandDrivenPipeline::CONTINUE_EXECUTING());
     algorithm->SetAbortExecute(1);
     return 1;

@@ -97,7 +97,7 @@ std::vector<std::unique_ptr<FaceMeshAdapter>> FaceMeshAdapter::ofPieces(
   std::vector<FacePiece> faces;
   for (std::size_t i = 0; i < pieces.size(); ++i)
   {
-    // A piece without facets lacks no ids of them.
+    // A piece without facets needs no facet ids.
     const std::vector<Index>& facets = adapters[i]->FacetIds;
     const bool bare = adapters[i]->Faces.facet.end() ==
       std::find_if(adapters[i]->Faces.facet.begin(), adapters[i]->Faces.facet.end(),
@@ -126,7 +126,7 @@ std::vector<std::unique_ptr<FaceMeshAdapter>> FaceMeshAdapter::ofPieces(
 void FaceMeshAdapter::find(RankGroup& group, const std::vector<FaceInput>& pieces,
   const std::vector<FaceMeshAdapter*>& adapters, int threads)
 {
-  // A plane mesh becomes a layer that is as high as a cell is wide.
+  // A planar mesh becomes a layer as thick as a cell is wide.
   FaceExtent extent;
   Index cells = 0;
   for (const FaceInput& piece : pieces)
@@ -156,8 +156,8 @@ void FaceMeshAdapter::find(RankGroup& group, const std::vector<FaceInput>& piece
   {
     std::string& notice = adapters.front()->Notice;
     notice += std::string(notice.empty() ? "" : " ") +
-      "The mesh is one layer of cells and is measured as planar, at right angles to " +
-      "xyz"[axis] + ".";
+      "The mesh is one layer of cells and is measured as planar, perpendicular to " + "xyz"[axis] +
+      ".";
   }
 }
 
@@ -187,8 +187,8 @@ void FaceMeshAdapter::list(
   }
   else if (mesh.view().numberOfCells > 0)
   {
-    throw Error("Metrics of finite volumes are defined for meshes of volumes and for plane meshes, "
-                "not for surfaces in space. Choose metrics of elements.");
+    throw Error("Finite-volume metrics are defined for volume meshes and planar meshes, not for "
+                "surfaces in space. Choose element metrics.");
   }
   const Index points = this->extruded() ? 2 * this->View.numberOfPoints : this->View.numberOfPoints;
   this->Faces = findFaces(points, this->List, this->Facets, std::move(patches), threads);
@@ -227,7 +227,7 @@ void FaceMeshAdapter::listVolumes(vtkDataSet* input, const MeshAdapter& adapter,
   {
     reverseFaces(this->List);
   }
-  // Lists of a file of OpenFOAM are as they are: faces that are turned are to be found.
+  // Lists from an OpenFOAM file are kept as given, so that reversed faces are found.
   const bool polyhedra =
     std::find(isPolyhedron.begin(), isPolyhedron.end(), 1) != isPolyhedron.end();
   if (polyhedra && !input->GetFieldData()->GetAbstractArray(FoamCase))
@@ -237,23 +237,23 @@ void FaceMeshAdapter::listVolumes(vtkDataSet* input, const MeshAdapter& adapter,
     {
       this->Notice = std::to_string(found.open) +
         (found.open == 1 ? " cell is open: it has" : " cells are open: they have") +
-        " an edge that is not one of two of the faces.";
+        " an edge that is not shared by exactly two faces.";
     }
-    // Where most lists have no sense, that of the others has no meaning.
+    // If most lists have no orientation, the orientation of the others is meaningless.
     const bool senseless =
       2 * found.turned > std::count(isPolyhedron.begin(), isPolyhedron.end(), 1);
     const Index turned = turnInsideOut(this->List, isPolyhedron, this->View.points, senseless);
     if (turned > 0)
     {
       this->Notice += std::string(this->Notice.empty() ? "" : " ") +
-        "The faces of the polyhedra are listed as they are seen from inside; they are taken as if "
-        "seen from outside.";
+        "The faces of the polyhedra are listed as seen from inside; they are treated as if seen "
+        "from outside.";
     }
   }
 }
 
 //------------------------------------------------------------------------------
-/// A plane mesh as one layer, in the frame of its plane.
+/// Makes a planar mesh one layer, in the frame of its plane.
 void FaceMeshAdapter::listPolygons(const Mesh& mesh, double height)
 {
   const MeshView& view = mesh.view();
@@ -291,7 +291,7 @@ void FaceMeshAdapter::listPolygons(const Mesh& mesh, double height)
   }
   if (mesh.blocks().empty())
   {
-    turnPolygons(cells, this->Points.data()); // of which no orientation was found
+    turnPolygons(cells, this->Points.data()); // no orientation was found
   }
   this->List = extrude(view.numberOfPoints, cells, this->Facets);
 }
@@ -332,7 +332,7 @@ void FaceMeshAdapter::listFacets(vtkDataSet* input, int patches)
     const int number = numbers ? static_cast<int>(numbers->GetComponent(cell, 0)) : -1;
     if (patches > 0 && number >= patches)
     {
-      continue; // of a "processor" patch of another piece, which was put together with this one
+      continue; // on a "processor" patch of another piece that was joined with this one
     }
     const Index first = this->View.offsets[cell];
     appendFacet(this->Facets, this->View.connectivity + first, this->View.offsets[cell + 1] - first,

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class tautline::FaceMeshAdapter
- * @brief The faces of a vtkDataSet, with owners and neighbors, as finite-volume programs have them.
+ * @brief The faces of a vtkDataSet with owners and neighbors, as used in finite-volume programs.
  *
- * Cells are those of highest dimension. Of volumes, linear cells and polyhedra count; 2D cells
- * beside them are faces of patches by the cell array `Patch` and the field data `PatchNames`,
- * `PatchTypes` and `NeighbourPatch`, as vtkFoamMeshReader makes them, or else of one patch. Two of
- * them at one face make a baffle of it.
+ * The cells have the highest dimension in the data set. In volume meshes, linear cells and
+ * polyhedra count; 2D cells beside them are faces of patches according to the cell array `Patch`
+ * and the field data `PatchNames`, `PatchTypes` and `NeighbourPatch`, as made by vtkFoamMeshReader,
+ * or otherwise of a single patch. Two of them at one face make it a baffle.
  *
- * A plane mesh of triangles, quadrilaterals and polygons becomes one layer of prisms between two
- * "empty" patches. A mesh of one layer of cells, of which no patches are known, gets such a patch,
- * see markLayer().
+ * A planar mesh of triangles, quadrilaterals and polygons becomes one layer of prisms between two
+ * "empty" patches. A mesh of one layer of cells without known patches gets such a patch, see
+ * markLayer().
  *
- * The pieces of one mesh are measured as one by ofPieces(): each gets the cells across its border.
+ * ofPieces() measures the pieces of one mesh as a whole: each piece gets the cells across its
+ * border.
  *
  * The data set and the adapter must outlive it.
  */
@@ -38,7 +39,7 @@ struct FaceInput
 class TAUTLINECORE_EXPORT FaceMeshAdapter
 {
 public:
-  /// The field data and the cell array that say which patches there are.
+  /// The names of the field data and the cell array that define the patches.
   static constexpr const char* PatchArray = "Patch";
   static constexpr const char* PatchNames = "PatchNames";
   static constexpr const char* PatchTypes = "PatchTypes";
@@ -50,29 +51,29 @@ public:
    * @brief Finds the faces.
    * @param adapter of the same data set, oriented
    *
-   * Throws Error where cells overlap, and where facets are of no cell.
+   * Throws Error if cells overlap or facets belong to no cell.
    */
   FaceMeshAdapter(vtkDataSet* input, MeshAdapter& adapter, int threads = 0);
 
-  /// Finds the faces of the pieces of one mesh, and couples them, see joinPieces(). Ghost cells do
-  /// not count. Collective. Throws as the constructor does.
+  /// Finds and couples the faces of the pieces of one mesh, see joinPieces(). Ghost cells do not
+  /// count. Collective. Throws as the constructor does.
   static std::vector<std::unique_ptr<FaceMeshAdapter>> ofPieces(
     RankGroup& group, const std::vector<FaceInput>& pieces, int threads = 0);
 
   const FaceMesh& mesh() const { return this->Faces; }
-  /// Coordinates of the points of mesh(): the points of the data set, for a plane mesh followed by
+  /// Coordinates of the points of mesh(): the points of the data set, for a planar mesh followed by
   /// the points above them, for a piece by the points of cells across its border.
   const double* points() const
   {
     return this->Points.empty() ? this->View.points : this->Points.data();
   }
-  /// The cell of the data set that each cell of mesh() is, but for those across the border of a
-  /// piece, which follow.
+  /// The cell of the data set for each cell of mesh(), except for the cells across the border of a
+  /// piece, which come last.
   const std::vector<Index>& cells() const { return this->Cells; }
   const MeshCheckFacts& facts() const { return this->Facts; }
-  /// Whether a plane mesh was made one layer of prisms.
+  /// Whether a planar mesh was made one layer of prisms.
   bool extruded() const { return this->Extruded; }
-  /// What was assumed, in sentences for the user, or "".
+  /// The assumptions made, as sentences for the user, or "".
   const std::string& notice() const { return this->Notice; }
 
 private:
@@ -89,7 +90,7 @@ private:
   FaceMesh Faces;
   ListedFaces List;
   ListedFacets Facets;
-  std::vector<Index> FacetIds; ///< global ids; empty: there are none
+  std::vector<Index> FacetIds; ///< global ids; empty if there are none
   std::vector<Index> Cells;
   std::vector<double> Points;
   bool Extruded = false;
@@ -97,8 +98,8 @@ private:
   std::string Notice;
 };
 
-/// Gives the pieces of a mesh of 2D cells the space that they fill with their polygons, which Mesh
-/// leaves out of account. Collective.
+/// Sets the space of a mesh of 2D cells in pieces to include its polygons, which Mesh does not take
+/// into account. Collective.
 TAUTLINECORE_EXPORT void setSpaceWithPolygons(
   RankGroup& group, const std::vector<FaceInput>& pieces);
 }

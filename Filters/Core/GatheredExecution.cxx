@@ -38,7 +38,7 @@ namespace tautline
 namespace
 {
 constexpr int DataTag = 27410;
-constexpr double Copies = 3.0; // of the mesh: as it is received, put together, and the result
+constexpr double Copies = 3.0; // of the mesh: as received, as joined, and as the result
 constexpr double BytesPerKibibyte = 1024.0;
 constexpr char MemoryRemedy[] =
   "run the first process on a machine with more memory, or divide the mesh";
@@ -62,7 +62,7 @@ struct PortMesh
   vtkDataObject* data = nullptr;
   int groups = 0;
   std::vector<GroupedPiece> pieces;
-  std::vector<vtkSmartPointer<vtkDataSet>> sent; ///< the pieces with what is selected of them
+  std::vector<vtkSmartPointer<vtkDataSet>> sent; ///< the pieces with their selected parts marked
 
   // On the first process:
   GatheredMesh gathered;
@@ -71,7 +71,7 @@ struct PortMesh
 };
 
 //------------------------------------------------------------------------------
-/// Sets the data objects of ports for a while.
+/// Sets the data objects of ports temporarily.
 class ReplacedData
 {
 public:
@@ -94,7 +94,7 @@ private:
 };
 
 //------------------------------------------------------------------------------
-/// Keeps the first error event of an algorithm, which others do not get.
+/// Keeps the first error event of an algorithm and hides it from other observers.
 class CaughtError
 {
 public:
@@ -114,7 +114,7 @@ public:
   }
   ~CaughtError() { this->Algorithm->RemoveObserver(this->Tag); }
 
-  /// Without what vtkErrorMacro() writes before and after it.
+  /// Strips the text that vtkErrorMacro() writes before and after the message.
   std::string text() const
   {
     constexpr char before[] = "): ";
@@ -133,7 +133,7 @@ private:
 };
 
 //------------------------------------------------------------------------------
-/// An image with the extent that was announced, 0 where it has no pixels; other data as they are.
+/// An image with the announced extent, with 0 where it has no pixels; other data are unchanged.
 vtkSmartPointer<vtkDataObject> enlarged(vtkDataObject* data, vtkInformation* info)
 {
   auto* image = vtkImageData::SafeDownCast(data);
@@ -214,7 +214,7 @@ private:
   vtkMultiProcessController* Controller;
   int Rank, Count;
 
-  std::vector<PortMesh> Meshes; ///< that of port 0 first
+  std::vector<PortMesh> Meshes; ///< the mesh of port 0 first
   std::vector<int> SelectionPorts;
   std::vector<std::vector<PieceSize>> Announced; ///< on the first process: by process
 
@@ -258,7 +258,7 @@ int GatheredExecution::fail(const std::string& message)
 }
 
 //------------------------------------------------------------------------------
-/// The meshes and selections of the ports, as this process has them.
+/// The meshes and selections of the ports on this process.
 void GatheredExecution::listInputs()
 {
   for (int port = 0; port < this->Algorithm->GetNumberOfInputPorts(); ++port)
@@ -288,7 +288,7 @@ void GatheredExecution::listInputs()
 }
 
 //------------------------------------------------------------------------------
-/// What is selected of the mesh on port 0, as arrays of its pieces.
+/// The selection on the mesh of port 0, as arrays of its pieces.
 void GatheredExecution::addSelections()
 {
   for (const int port : this->SelectionPorts)
@@ -311,7 +311,7 @@ void GatheredExecution::addSelections()
 }
 
 //------------------------------------------------------------------------------
-/// Sends the sizes of the pieces to the first process. @return what it finds wrong
+/// Sends the sizes of the pieces to the first process. @return the problem that it finds
 std::string GatheredExecution::announce()
 {
   vtkMultiProcessStream own;
@@ -365,7 +365,7 @@ std::string GatheredExecution::announce()
 }
 
 //------------------------------------------------------------------------------
-/// The structure of composite data is that of a process that has most meshes.
+/// The structure of composite data is taken from the process with the most meshes.
 void GatheredExecution::exchangeStructures()
 {
   for (PortMesh& mesh : this->Meshes)
@@ -391,7 +391,7 @@ void GatheredExecution::exchangeStructures()
 }
 
 //------------------------------------------------------------------------------
-/// On the first process: places for the pieces, with those that are not sent.
+/// On the first process: places for the pieces, including pieces that are not sent.
 void GatheredExecution::preparePieces()
 {
   for (PortMesh& mesh : this->Meshes)
@@ -434,7 +434,7 @@ void GatheredExecution::preparePiece(
 }
 
 //------------------------------------------------------------------------------
-/// Only sends and receives: whoever failed here would leave others waiting.
+/// Only sends and receives: a failure here would leave other processes waiting.
 void GatheredExecution::gather()
 {
   for (PortMesh& mesh : this->Meshes)
@@ -538,7 +538,7 @@ void GatheredExecution::execute(const std::function<int()>& execute)
 }
 
 //------------------------------------------------------------------------------
-/// All processes get what became of the execution. @return whether there are results
+/// Sends the outcome of the execution to all processes. @return whether there are results
 bool GatheredExecution::shareOutcome()
 {
   this->Failure = shareText(this->Controller, this->Failure);
@@ -619,7 +619,7 @@ int GatheredExecution::run(const std::function<int()>& execute)
     const OneProcess alone;
     problem = this->attempt([this] { this->assembleAll(); });
   }
-  // No process assists in what does not begin.
+  // No process assists if the execution does not start.
   problem = shareText(this->Controller, problem);
   if (!problem.empty())
   {
@@ -631,7 +631,7 @@ int GatheredExecution::run(const std::function<int()>& execute)
   }
   else if (this->Rules.assist)
   {
-    // Work in step fails on the first process, too, which reports it.
+    // Joint work also fails on the first process, which reports the error.
     this->attempt(this->Rules.assist);
   }
   if (!this->shareOutcome())

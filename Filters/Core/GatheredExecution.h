@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file GatheredExecution.h
- * @brief A filter on many processes, whose numbers are those of one: the first process has the
- * whole mesh while it computes, and the results go back to the pieces.
+ * @brief Runs a filter on many processes with the serial result: the first process holds the whole
+ * mesh while it computes, and the results go back to the pieces.
  */
 #ifndef tautline_GatheredExecution_h
 #define tautline_GatheredExecution_h
@@ -23,12 +23,12 @@ class vtkInformationVector;
 
 namespace tautline
 {
-/// What becomes of the mesh on output port 0.
+/// The distribution of the mesh on output port 0.
 enum class GatheredResult
 {
-  None,     ///< the filter executes on all processes by itself
-  SameMesh, ///< the pieces get its points and arrays, and keep what they have
-  NewMesh,  ///< a process gets the cells next to those that it had
+  None,     ///< the filter itself executes on all processes
+  SameMesh, ///< the pieces keep their cells and get the new points and arrays
+  NewMesh,  ///< a process gets the cells closest to its old ones
   OnFirst   ///< it stays on the first process
 };
 
@@ -71,55 +71,56 @@ private:
   bool Writes;
 };
 
-/// How the processes of a parallel server execute a filter.
+/// The rules by which the processes of a parallel server execute a filter.
 struct GatheredRules
 {
   GatheredResult result = GatheredResult::None;
   int base = 0; ///< the input port whose mesh the output has, with the arrays of its pieces
-  /// Exchanges what the properties of the filter return; may be empty.
+  /// Exchanges the results that the filter returns through its properties; may be empty.
   std::function<void(ResultStream&)> exchange;
-  /// What the other processes do while the first one executes, in step with it, by a RankGroup that
-  /// was made before; empty: they wait.
+  /// The work of the other processes while the first one executes, in step with it through a
+  /// RankGroup made before; if empty, they wait.
   std::function<void()> assist;
-  /// Whether the partitions of a partitioned or multipiece data set are one mesh on one process, as
-  /// they are on several; not with None.
+  /// Whether the partitions of a partitioned or multipiece data set are also one mesh on a single
+  /// process, as they are on several; not with None.
   bool joinsPartitions = true;
-  /// Whether all processes execute the filter at once, so that an invalid input of one of them is
+  /// Whether all processes execute the filter together, so that an invalid input on one of them is
   /// an error on all.
   bool onAll = true;
 };
 
-/// Whether to execute a filter by executeGathered(): there are several processes, and each calls
-/// the filter once; or a mesh of an input is in partitions. Not within it.
+/// Whether to execute a filter with executeGathered(): there are several processes and each calls
+/// the filter once, or a mesh of an input is in partitions. False within executeGathered().
 TAUTLINECORE_EXPORT bool isGathered(vtkAlgorithm* algorithm, const GatheredRules& rules);
 
 /**
  * @brief Executes REQUEST_DATA of a filter for all processes. Collective.
  *
  * The pieces of each input are sent to the first process, which puts them together (assemble()) and
- * calls execute() with the wholes as inputs; there it is the only process, with progress, abort and
- * time limit as usual. On one process only partitions are put together. The partitions of a
+ * calls execute() with the whole meshes as inputs; progress, abort and the time limit work there as
+ * on a single process. On a single process only partitions are joined. The partitions of a
  * partitioned or multipiece data set are one mesh, on all processes together; the blocks of a
- * multiblock data set are meshes of their own. A mesh on a further input whose pieces match those
- * on port 0 gets the same numbers. Selections are those of all processes. Tables and other outputs
- * than port 0 stay on the first process. Errors of any process are reported by all.
+ * multiblock data set are meshes of their own. A mesh on another input whose pieces match the
+ * pieces on port 0 gets the same numbering. Selections of all processes are joined. Tables and
+ * outputs other than port 0 stay on the first process. All processes report the errors of any
+ * process.
  *
- * The whole mesh is in the memory of the first process, about three times; Error before anything is
- * sent if that is not available.
+ * The first process needs about three times the memory of the whole mesh; if it is not available,
+ * an Error is thrown before anything is sent.
  *
- * @param execute what the superclass does for the request. @return its result
+ * @param execute the superclass's handling of the request. @return its result
  * @return 1, or 0 after an error: the outputs are empty
  */
 TAUTLINECORE_EXPORT int executeGathered(vtkAlgorithm* algorithm, vtkInformation* request,
   vtkInformationVector** inputs, vtkInformationVector* outputs, const GatheredRules& rules,
   const std::function<int()>& execute);
 
-/// Empties an output. With several processes an image has the announced extent, as the pipeline
-/// executes a process again, alone, whose image has not.
+/// Empties an output. With several processes an image keeps the announced extent, because the
+/// pipeline executes a process again, alone, if its image lacks it.
 TAUTLINECORE_EXPORT void emptyOutput(vtkInformation* info);
 
 /**
- * @brief ProcessRequest() of a filter that does not derive from vtkTautlineAlgorithm:
+ * @brief ProcessRequest() for a filter that does not derive from vtkTautlineAlgorithm:
  * processInScope(), on several processes within executeGathered() after the inputs are checked.
  * @param work the ProcessRequest() of the superclass
  */

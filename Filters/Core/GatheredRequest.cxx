@@ -39,8 +39,8 @@ bool isGathered(vtkAlgorithm* algorithm, const GatheredRules& rules)
   {
     return false;
   }
-  // VTK calls a filter that takes data sets only once per block, and each process as often as it
-  // has some.
+  // VTK calls a filter that accepts only data sets once per block, so that each process makes as
+  // many calls as it has blocks.
   vtkInformation* port = algorithm->GetInputPortInformation(0);
   const char* first = port->Get(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), 0);
   const std::string type = first ? first : "";

@@ -31,7 +31,7 @@ GeometrySurface::GeometrySurface(
     throw Error(dimension == Dimension::Volume
         ? "The Geometry has volume cells: run Extract Surface on it first."
         : "The Geometry has no triangles or quadrilaterals: give a surface, for example an STL "
-          "file, or run Tetrahedralize on it first, which cuts polygons into triangles.");
+          "file, or run Tetrahedralize on it first to cut polygons into triangles.");
   }
 }
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file GeometrySurface.h
- * @brief The Geometry of a filter, the surface or outline that a mesh is placed on, as a mesh of
- * the kernel.
+ * @brief Converts the Geometry of a filter (the surface or outline that a mesh is placed on) to a
+ * mesh of the kernel.
  */
 #ifndef tautline_GeometrySurface_h
 #define tautline_GeometrySurface_h
@@ -22,7 +22,7 @@ class TAUTLINECORE_EXPORT GeometrySurface
 {
 public:
   /**
-   * @param geometry the input; null or without cells is an Error, as are volume cells
+   * @param geometry the input; throws Error if it is null, has no cells, or has volume cells
    * @param frame of the mesh that is placed on it
    * @param outline whether that mesh is planar
    */

@@ -8,8 +8,8 @@ namespace tautline
 {
 namespace
 {
-/// "Objective: 12 to 8", or "Objectives: 12 to 8, 3 to 2". Of several, each one is stated: the
-/// scalarized objective of the lexicographic method is another one in each of its stages.
+/// "Objective: 12 to 8", or "Objectives: 12 to 8, 3 to 2". Several are listed individually, because
+/// the scalarized objective of the lexicographic method differs between its stages.
 std::string objectivesPhrase(const IterationRecord& first, const IterationRecord& last)
 {
   std::ostringstream text;
@@ -80,9 +80,8 @@ std::string summarize(
                                           : "; untangling came first and left some inverted.");
   if (result.newlyInvalid > 0)
   {
-    text << "\nUntangling has made " << result.newlyInvalid
-         << (result.newlyInvalid == 1 ? " element that was" : " elements that were")
-         << " valid inverted or degenerate.";
+    text << "\nUntangling has inverted or collapsed " << result.newlyInvalid
+         << (result.newlyInvalid == 1 ? " valid element" : " valid elements") << ".";
   }
   if (result.withoutNormal > 0)
   {
@@ -90,31 +89,28 @@ std::string summarize(
          << result.withoutNormal
          << (result.withoutNormal == 1 ? " element has no area: its points stayed"
                                        : " elements have no area: their points stayed")
-         << ", as nothing determines to which side of the surface it would open. Improve Mesh "
-            "removes such triangles.";
+         << ", because the direction in which it would open is undefined. Run Improve Mesh to "
+            "remove such triangles.";
   }
   if (result.restored > 0)
   {
-    text
-      << "\n"
-      << result.restored << (result.restored == 1 ? " point" : " points")
-      << " were put back to where they were: an element there would be worse than the worst one of "
-         "the input.";
+    text << "\n"
+         << result.restored << (result.restored == 1 ? " point" : " points")
+         << " were moved back: an element there would be worse than the worst one of the input.";
   }
   if (result.unchanged)
   {
-    text << "\nThe points are those "
-         << (result.untangled ? "that untangling left" : "of the input")
+    text << "\nThe result is " << (result.untangled ? "the untangled mesh" : "the input")
          << (isConverged(result.reason)
-                ? ": the little that the objective can still be reduced by would make the worst "
-                  "element worse or more elements invalid."
-                : ": no others with a smaller objective were found without a worse worst element "
-                  "or more invalid elements.");
+                ? ": the small remaining reduction of the objective would make the worst element "
+                  "worse or more elements invalid."
+                : ": no mesh with a smaller objective was found without a worse worst element or "
+                  "more invalid elements.");
   }
   const bool larger =
     !result.history.empty() && result.history.back().objective > result.history.front().objective;
   text << (result.worstFirst && larger
-      ? "\nThe worst element came first: the objective is larger than in the input."
+      ? "\nThe worst element had priority: the objective is larger than in the input."
       : "");
   text << surfaceErrorSentence(result.surfaceError, diagonal);
   if (result.leftSurface > 0)
@@ -122,7 +118,7 @@ std::string summarize(
     text << "\n"
          << result.leftSurface << (result.leftSurface == 1 ? " point" : " points")
          << " of the boundary near the worst elements left the surface, within Surface Tolerance. "
-            "Leave Surface off keeps them on it.";
+            "Switch Leave Surface off to keep them on it.";
   }
   if (result.heldOnSurface + result.heldOnInterfaces > 0)
   {
@@ -133,8 +129,9 @@ std::string summarize(
          << (result.heldOnSurface > 0 ? points(result.heldOnSurface, " of the boundary") : "")
          << (both ? " and " : "")
          << (result.heldOnInterfaces > 0 ? points(result.heldOnInterfaces, " of interfaces") : "")
-         << ": their last steps went too far from the surface. A larger one, or 0, lets them slide "
-            "on.";
+         << ": their last steps went too far from the surface. A larger tolerance, or 0, allows "
+            "them to "
+            "slide farther.";
   }
   return text.str();
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file IterationHistory.h
- * @brief The iterations of filters that move points, as rows of a table and as sentences.
+ * @brief Reports the iterations of filters that move points as rows of a table and as sentences.
  */
 #ifndef tautline_IterationHistory_h
 #define tautline_IterationHistory_h
@@ -26,7 +26,7 @@ namespace tautline
 TAUTLINECORE_EXPORT void addHistory(TableRows& rows, const std::vector<IterationRecord>& history,
   const std::vector<std::string>& names, const std::string& block);
 
-/// Reason, iterations, seconds, free points and inverted elements, in sentences.
+/// Sentences with the reason for stopping, iterations, seconds, free points and inverted elements.
 /// @param diagonal of the bounding box of the mesh, see surfaceErrorSentence()
 TAUTLINECORE_EXPORT std::string summarize(
   const OptimizeResult& result, const MovableMesh& mesh, const std::string& block, double diagonal);
@@ -41,10 +41,10 @@ TAUTLINECORE_EXPORT std::string distanceText(double distance, double diagonal);
  */
 TAUTLINECORE_EXPORT std::string surfaceErrorSentence(double surfaceError, double diagonal);
 
-/// What begins a sentence that warns of the result, which panels show in red.
+/// The prefix of a sentence that warns of a problem in the result; panels show it in red.
 constexpr const char* WarningPrefix = "Warning: ";
 
-/// "18 elements are inverted or degenerate (51 before)."; "" if none is after.
+/// "18 elements are inverted or degenerate (51 before)."; "" if none are inverted after.
 TAUTLINECORE_EXPORT std::string invalidSentence(Index before, Index after);
 }
 #endif

@@ -13,7 +13,7 @@ namespace tautline
 {
 namespace
 {
-/// Of the information of a mesh: names of arrays, each followed by the piece that does not have it.
+/// In the information of a mesh: names of arrays, each followed by the piece that lacks it.
 vtkInformationStringVectorKey* lackingKey(bool ofCells)
 {
   static vtkInformationStringVectorKey* points =

@@ -26,7 +26,7 @@ namespace tautline
 {
 namespace
 {
-/// Of the diagonal: how far points may be from the planes.
+/// The largest distance of points from the planes, as a fraction of the diagonal.
 constexpr double PlaneTolerance = 1e-9;
 
 bool isVolume(int type)
@@ -55,7 +55,8 @@ std::vector<int> emptyPatches(vtkDataSet* input)
   return numbers;
 }
 
-/// The component across an "empty" patch, all points of whose first face have the same; -1: none.
+/// The coordinate axis across an "empty" patch, along which all points of its first face have the
+/// same coordinate; -1 if there is none.
 int emptyAxis(vtkDataSet* input)
 {
   const std::vector<int> empty = emptyPatches(input);
@@ -94,7 +95,7 @@ int emptyAxis(vtkDataSet* input)
   return -1;
 }
 
-/// Gives a grid the arrays of points and cells of a data set that are at these places.
+/// Copies to a grid the point and cell data of a data set at these indices.
 void takeArrays(vtkDataSet* from, const std::vector<vtkIdType>& points,
   const std::vector<vtkIdType>& cells, vtkUnstructuredGrid* grid)
 {
@@ -112,8 +113,8 @@ void takeArrays(vtkDataSet* from, const std::vector<vtkIdType>& points,
   }
 }
 
-/// Adds the arrays of `made` that are not those of `given`, with zeros where there is no source.
-/// @param sources per tuple of the output that of `made`, or -1
+/// Adds the arrays of `made` that `given` lacks, with zeros where there is no source.
+/// @param sources the tuple of `made` for each tuple of the output, or -1
 void giveNewArrays(vtkDataSetAttributes* made, vtkDataSetAttributes* given,
   const std::vector<vtkIdType>& sources, vtkDataSetAttributes* output)
 {
@@ -179,7 +180,7 @@ std::unique_ptr<LayerMesh> LayerMesh::find(vtkDataSet* input)
 }
 
 //------------------------------------------------------------------------------
-/// Whether the mesh is a layer across an axis; finds the planar mesh.
+/// Tests whether the mesh is a layer across an axis, and finds the planar mesh.
 bool LayerMesh::lies(vtkDataSet* input, int axis)
 {
   this->Input = input;
@@ -224,7 +225,7 @@ bool LayerMesh::lies(vtkDataSet* input, int axis)
     input->GetCellPoints(cell, ids);
     const CellTopology& t = topology(static_cast<CellType>(vtkType));
     const auto side = [&](int node) { return sides[ids->GetId(node)]; };
-    // The edges across the layer tell which points belong together.
+    // The edges across the layer define the pairs of points.
     int across = 0;
     for (int e = 0; e < t.edges; ++e)
     {
@@ -283,7 +284,7 @@ bool LayerMesh::lies(vtkDataSet* input, int axis)
 
 //------------------------------------------------------------------------------
 /// Facets across the layer are edges of the plane, so that patches can be chosen.
-/// @param numbers per point of the input: that of the planar mesh, or -1
+/// @param numbers per point of the input: its number in the planar mesh, or -1
 void LayerMesh::addLines(const std::vector<vtkIdType>& numbers)
 {
   vtkDataSet* input = this->Input;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class tautline::LayerMesh
- * @brief One layer of hexahedra and wedges between two planes, as 2D cases of OpenFOAM have it,
- * seen as the planar mesh of one side; the points of the other side move with it.
+ * @brief One layer of hexahedra and wedges between two planes, as in 2D cases of OpenFOAM, treated
+ * as the planar mesh of one side; the points of the other side move with it.
  *
- * The planes are at right angles to an axis, each cell has one face in each, and each point of the
- * lower one has one counterpart above. Where this holds for several axes, as for a row of cells,
- * "empty" patches decide (see FaceMeshAdapter); without them the mesh is none.
+ * The planes are perpendicular to an axis, each cell has one face in each plane, and each point of
+ * the lower plane has one counterpart above. If this holds for several axes, for example for a row
+ * of cells, "empty" patches decide (see FaceMeshAdapter); without them the mesh is not a layer.
  */
 #ifndef tautline_LayerMesh_h
 #define tautline_LayerMesh_h
@@ -39,15 +39,15 @@ public:
   vtkSmartPointer<vtkUnstructuredGrid> side(vtkDataSet* other) const;
 
   /**
-   * @brief Gives an output, a copy of the input, what a filter made of planar(): its points, those
-   * of the other side moved by the same, and the arrays that it made. Points at the same place of
-   * their sides stay so, bit by bit.
-   * @param planar that the filter had
-   * @param made by the filter: a shallow copy of `planar`, changed
+   * @brief Transfers the result of a filter on planar() to an output, a copy of the input: the
+   * points, with points of the other side displaced equally, and the new arrays. Points at the same
+   * position on both sides stay so, bit for bit.
+   * @param planar the filter's input
+   * @param made the filter's output: a modified shallow copy of `planar`
    */
   void expand(vtkPointSet* planar, vtkPointSet* made, vtkPointSet* output) const;
 
-  /// 0 to 2: across the layer.
+  /// The axis across the layer, 0 to 2.
   int axis() const { return this->Axis; }
 
 private:
@@ -57,8 +57,8 @@ private:
 
   vtkDataSet* Input = nullptr;
   int Axis = 0;
-  std::vector<vtkIdType> Points; ///< the input's number of each point of the planar mesh
-  std::vector<vtkIdType> Mates;  ///< per point of the planar mesh: that on the other side
+  std::vector<vtkIdType> Points; ///< per point of the planar mesh: its number in the input
+  std::vector<vtkIdType> Mates;  ///< per planar point: its mate on the other side
   std::vector<vtkIdType> Cells;  ///< the input's number of each cell
   std::vector<unsigned char> Types;
   std::vector<vtkIdType> Offsets = { 0 }, Nodes; ///< of the planar cells

@@ -9,7 +9,8 @@ namespace tautline
 {
 namespace
 {
-/// The statistics of all lists together. Sums are rounded once, whatever the order of the values.
+/// The joint statistics of all lists. Sums are rounded once, so that the order of the values does
+/// not matter.
 MetricStatistics summarizeTogether(
   RankGroup& group, const MetricInfo& info, int dimension, const std::vector<double>& own)
 {

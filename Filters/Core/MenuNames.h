@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MenuNames.h
- * @brief The names that filters and sources have in menus, for the text of the progress.
+ * @brief The names of filters and sources in menus, for the progress text.
  */
 #ifndef tautline_MenuNames_h
 #define tautline_MenuNames_h

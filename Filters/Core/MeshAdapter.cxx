@@ -41,7 +41,7 @@ MeshAdapter::MeshAdapter(vtkDataSet* input, int threads)
 }
 
 //------------------------------------------------------------------------------
-/// Replaces cells that list points more than once by what remains of them. They have been checked.
+/// Replaces cells that list points more than once by their remaining shape. They have been checked.
 void MeshAdapter::takeCollapsed()
 {
   this->Collapsed = findCollapsedCells(*this->TheMesh, this->Threads);
@@ -108,8 +108,8 @@ std::string MeshAdapter::coarseness() const
     text << "The coordinates are too coarse for the elements: these are about " << range.extent
          << " long and up to " << range.farthest() << " from the origin, where coordinates in "
          << (this->SinglePrecision ? "single" : "double") << " precision have steps of " << step
-         << ". Lengths and angles are those of the rounded points, and points move in these steps "
-            "only. Create the mesh near the origin"
+         << ". Lengths and angles are computed from the rounded points, and points move only in "
+            "these steps. Create the mesh near the origin"
          << (this->SinglePrecision ? ", or in double precision." : ".");
   }
   return text.str();
@@ -152,7 +152,7 @@ void MeshAdapter::mergeCoincidentPoints(int threads, bool dropCopies)
   this->Coincident = findCoincidentPoints(*this->TheMesh, nullptr, threads, this->Ghosts, &copies);
   if (this->Coincident.overlapping > 0 || this->Coincident.crowded > 0)
   {
-    // Cells that list their points in the opposite order seem to be on the wrong side of a facet.
+    // Cells that list their points in the opposite order appear on the wrong side of a facet.
     std::vector<signed char> validity(this->View.numberOfCells);
     this->TheMesh->classifyCells(validity.data(), threads);
     const RankOrder found = this->findOrder(validity.data());
@@ -171,7 +171,7 @@ void MeshAdapter::mergeCoincidentPoints(int threads, bool dropCopies)
   this->MergedConnectivity.assign(first, first + merged.offsets[merged.numberOfCells]);
   for (Index& node : this->MergedConnectivity)
   {
-    // Cells that are not supported may have any number here.
+    // Unsupported cells may have any number here.
     if (node >= 0 && node < merged.numberOfPoints)
     {
       node = this->Coincident.representative[node];
@@ -194,7 +194,7 @@ void MeshAdapter::dropCells(const std::vector<unsigned char>& flags)
     return;
   }
   MeshView view = this->TheMesh->view();
-  // Points of cells that are not supported stay: these have none.
+  // Points of unsupported cells stay; these cells have none.
   std::vector<Index> offsets = { 0 }, connectivity;
   std::vector<unsigned char> types(view.cellTypes, view.cellTypes + view.numberOfCells);
   this->Dropped.resize(flags.size(), 0);
@@ -268,7 +268,7 @@ void MeshAdapter::reverseCells(const std::vector<unsigned char>& flags)
     view.offsets = this->TheMesh->view().offsets; // without the cells that are dropped
     view.cellTypes = this->TheMesh->view().cellTypes;
   }
-  const MeshSpace space = this->TheMesh->space(); // of the whole, where this is a piece
+  const MeshSpace space = this->TheMesh->space(); // the whole mesh's, if this is a piece
   *this->TheMesh = Mesh(view, this->Threads);     // in place: others refer to it
   this->TheMesh->setSpace(space);
   this->setMirrored(mirrored);
@@ -368,7 +368,7 @@ bool plainArrays(vtkCellArray* cells, const Index*& offsets, const Index*& conne
   return offsets && connectivity;
 }
 
-/// Types whose local numbering or generality differs from the kernel's, and what they become.
+/// Types whose local numbering or generality differs from the kernel's, and their replacements.
 unsigned char kernelType(int vtkType, vtkIdType size)
 {
   switch (vtkType)
@@ -404,7 +404,7 @@ void MeshAdapter::takeCells(vtkDataSet* input)
   const Index count = input->GetNumberOfCells();
   this->View.numberOfCells = count;
 
-  // An unstructured grid without pixels, voxels and polygons is taken as it is.
+  // An unstructured grid without pixels, voxels and polygons is used as it is.
   if (auto* grid = vtkUnstructuredGrid::SafeDownCast(input))
   {
     this->GivenTypes = cellTypesOf(grid);
@@ -436,7 +436,7 @@ void MeshAdapter::takeCells(vtkDataSet* input)
     return;
   }
 
-  // Anything else goes cell by cell.
+  // Anything else is converted cell by cell.
   this->Offsets.reserve(count + 1);
   this->Offsets.push_back(0);
   auto ids = vtkSmartPointer<vtkIdList>::New();
@@ -449,18 +449,19 @@ void MeshAdapter::takeCells(vtkDataSet* input)
     const Index first = static_cast<Index>(this->Connectivity.size());
     this->Connectivity.insert(
       this->Connectivity.end(), ids->GetPointer(0), ids->GetPointer(0) + size);
-    // A pixel across y walks x, then z, about -y; a plane's normal is +y.
+    // A pixel across y runs along x, then z, so its normal is -y; the normal of the plane is +y.
     if (type == VTK_PIXEL && size == 4 && this->acrossY(first))
     {
       std::swap(this->Connectivity[first + 1], this->Connectivity[first + 2]);
     }
-    // Lagrange and Bezier wedges list their triangles from inside, unlike all others.
+    // Lagrange and Bezier wedges list their triangles as seen from inside, unlike all other wedges.
     if ((type == VTK_LAGRANGE_WEDGE || type == VTK_BEZIER_WEDGE) && size >= 6)
     {
       std::swap(this->Connectivity[first + 1], this->Connectivity[first + 2]);
       std::swap(this->Connectivity[first + 4], this->Connectivity[first + 5]);
     }
-    // Pixels and voxels count rows of points; quadrilaterals and hexahedra walk round.
+    // Pixels and voxels list points row by row; quadrilaterals and hexahedra list them around a
+    // face.
     if ((type == VTK_PIXEL && size == 4) || (type == VTK_VOXEL && size == 8))
     {
       std::swap(this->Connectivity[first + 2], this->Connectivity[first + 3]);
@@ -684,7 +685,7 @@ std::string describe(const Orientation& o, Dimension dimension)
     {
       text += std::to_string(o.disagreeing) +
         (dimension == Dimension::Volume ? " faces" : " edges") +
-        " have neighbours that list their points in opposite senses";
+        " have neighbors that list their points in opposite order";
     }
     else
     {
@@ -706,7 +707,7 @@ std::string describe(const RankOrder& found, Dimension dimension)
     const std::string cells = order.firstAmbiguous >= 0
       ? "The cells connected with cell " + std::to_string(order.firstAmbiguous)
       : "The cells of " + std::to_string(order.ambiguous) + " connected parts";
-    text += " " + cells + " have no consistent orientation, like those of a Moebius band.";
+    text += " " + cells + " have no consistent orientation, as on a Moebius band.";
   }
   if (order.reversed > 0)
   {
@@ -723,7 +724,7 @@ std::string describe(const RankOrder& found, Dimension dimension)
 
 namespace
 {
-/// For each cell type the order of its points that mirrors it.
+/// The order of the points that mirrors a cell, for each type.
 std::vector<int> mirroredOrder(int vtkType, vtkIdType size)
 {
   switch (vtkType)

@@ -20,7 +20,7 @@ namespace
 {
 using Make = std::function<vtkSmartPointer<vtkDataSet>(int group, vtkDataSet* piece)>;
 
-/// Walks through a data object and makes one of the same structure.
+/// Traverses a data object and makes one of the same structure.
 class Walker
 {
 public:

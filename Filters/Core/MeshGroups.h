@@ -29,7 +29,7 @@ struct GroupedPiece
  * @brief Lists the data sets. A data set is a mesh, and so is each block of a multiblock data set;
  * the partitions of a partitioned or multipiece data set are pieces of one mesh. Throws Error for
  * other composite data.
- * @param groups set to the number of meshes, with those that are null
+ * @param groups set to the number of meshes, including null ones
  */
 TAUTLINECORE_EXPORT std::vector<GroupedPiece> listPieces(vtkDataObject* data, int& groups);
 
@@ -37,10 +37,11 @@ TAUTLINECORE_EXPORT std::vector<GroupedPiece> listPieces(vtkDataObject* data, in
 TAUTLINECORE_EXPORT bool hasPartitions(vtkDataObject* data);
 
 /**
- * @brief A data object of the same structure, with other data sets.
- * @param make the data set in the place of a piece (null: there is none), or null
- * @param merge whether a mesh in partitions is to become one partition: make() is called for each
- * mesh once, with null for partitions
+ * @brief A data object of the same structure with other data sets.
+ * @param make returns the replacement of a piece, or null; its argument is null if there is no
+ * piece
+ * @param merge whether a mesh in partitions becomes one partition: make() is called once for each
+ * mesh, with null for partitions
  */
 TAUTLINECORE_EXPORT vtkSmartPointer<vtkDataObject> rebuild(vtkDataObject* like, bool merge,
   const std::function<vtkSmartPointer<vtkDataSet>(int group, vtkDataSet* piece)>& make);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MeshOutput.h
- * @brief Plain vectors of points, simplices and markers as VTK data sets.
+ * @brief Converts plain vectors of points, simplices and markers to VTK data sets.
  */
 #ifndef tautline_MeshOutput_h
 #define tautline_MeshOutput_h
@@ -21,7 +21,7 @@
 
 namespace tautline
 {
-/// Points with `dimension` coordinates each; the third of planar ones is z.
+/// Points with `dimension` coordinates each; planar points get the third coordinate z.
 inline vtkSmartPointer<vtkPoints> makePoints(
   const std::vector<double>& coordinates, int dimension, double z = 0.0)
 {
@@ -49,7 +49,7 @@ inline vtkSmartPointer<vtkCellArray> makeCells(const std::vector<Index>& nodes, 
   return cells;
 }
 
-/// The marker of a cell, of an array of any type; 0 where it is no number of the range of int.
+/// The marker of a cell in an array of any type; 0 if it is not a number in the range of int.
 inline int markerAt(vtkDataArray* markers, vtkIdType cell)
 {
   const double value = markers->GetComponent(cell, 0);
@@ -57,7 +57,7 @@ inline int markerAt(vtkDataArray* markers, vtkIdType cell)
   return value >= -Limit && value <= Limit ? static_cast<int>(value) : 0;
 }
 
-/// A 64-bit array, as the readers make them.
+/// A 64-bit array, as made by the readers.
 inline vtkSmartPointer<vtkTypeInt64Array> makeMarkers(
   const char* name, const std::vector<int>& values)
 {

@@ -29,7 +29,7 @@ CellKey keyOf(const MeshView& view, Index cell, const NumberOf& numberOf)
   return key;
 }
 
-/// The rows of a table in the order of their keys, and of equal ones in that of their values.
+/// Sorts the rows of a table by key, and rows with equal keys by value.
 std::vector<Index> orderOf(
   const std::vector<CellKey>& keys, const std::vector<double>& values, int components)
 {
@@ -64,7 +64,7 @@ std::vector<double> MovableMesh::ofCells(const std::vector<double>& ofPiece, int
     }
     const auto local = [&](Index p) { return mesh.localOfPiece()[p]; };
     const CellKey key = keyOf(piece, cell, [&](Index p) { return mesh.numbers()[local(p)]; });
-    // All processes that own one of its points have the cell.
+    // All processes that own a point of the cell have the cell.
     const Index begin = piece.offsets[cell], end = piece.offsets[cell + 1];
     std::array<int, MaxNodes> owners;
     owners.fill(mesh.owners()[local(piece.connectivity[begin])]);
@@ -107,7 +107,7 @@ std::vector<double> MovableMesh::ofCells(const std::vector<double>& ofPiece, int
 }
 //------------------------------------------------------------------------------
 /// Marks the cells of the piece that are copies of another one, here or on another process, so that
-/// they are counted once: all but the first, by the processes and the ids.
+/// each is counted once: all but the first in the order of processes and ids.
 void MovableMesh::skipCopies()
 {
   const DistributedMesh& mesh = this->distributed();

@@ -110,7 +110,7 @@ MovableMesh::MovableMesh(vtkDataSet* input, int threads, bool mergePoints, bool 
   { return topology(block.type).dimension == solid; };
   if (std::none_of(this->mesh().blocks().begin(), this->mesh().blocks().end(), isElement))
   {
-    throw Error("There is no element whose points could move. " + this->Adapter.notice() +
+    throw Error("There is no element with points that can move. " + this->Adapter.notice() +
       (this->mesh().polyhedra() > 0
           ? " The preset Finite volumes of Optimize Mesh moves the points of polyhedra."
           : ""));
@@ -138,8 +138,8 @@ MovableMesh::MovableMesh(vtkDataSet* input, int threads, bool mergePoints, bool 
 }
 
 //------------------------------------------------------------------------------
-/// Finds the boundary of a mesh of this process alone, whose duplicate cells then count once.
-/// @return a sentence on these, or ""
+/// Finds the boundary of a mesh of this process alone; duplicate cells then count once.
+/// @return a sentence on the duplicates, or ""
 std::string MovableMesh::findSkin()
 {
   const Mesh& mesh = this->mesh();
@@ -193,7 +193,7 @@ MovableMesh::MovableMesh(
   this->Spread->marked.assign(view.numberOfPoints, 0);
   this->Skip.assign(view.numberOfCells, 0);
   std::vector<unsigned char> held(view.numberOfPoints, 0);
-  // As a rule all cells are elements, and need not be copied.
+  // Usually all cells are elements and need not be copied.
   bool copies = this->Spread->dimension == 0;
   for (Index cell = 0; cell < view.numberOfCells; ++cell)
   {
@@ -211,8 +211,8 @@ MovableMesh::MovableMesh(
   {
     if (group.size() > 1)
     {
-      throw Error("With Merge Coincident Points off, points of different processes are one by "
-                  "their global ids, and there are none: run Generate Global Ids first.");
+      throw Error("With Merge Coincident Points off, points of different processes are identified "
+                  "by global ids, and there are none: run Generate Global Ids first.");
     }
     ids.resize(view.numberOfPoints);
     std::iota(ids.begin(), ids.end(), Index(0));
@@ -264,7 +264,7 @@ void MovableMesh::fixWhatStays()
   {
     if (!dropped.empty() && dropped[cell])
     {
-      continue; // its points are those of the cell that it is a copy of
+      continue; // its points are the points of the original cell
     }
     const bool ghost = this->Adapter.ghostCells() && this->Adapter.ghostCells()[cell];
     const bool measured = this->Validity[cell] != NotMeasured;
@@ -274,7 +274,7 @@ void MovableMesh::fixWhatStays()
     }
     for (Index n = view.offsets[cell]; n < view.offsets[cell + 1]; ++n)
     {
-      // The triangles on the boundary of a solid do not keep its points from sliding.
+      // Triangles on the boundary of a solid do not prevent its points from sliding.
       const Index point = view.connectivity[n];
       if (ghost || !slide || !this->Skin[point])
       {
@@ -285,7 +285,7 @@ void MovableMesh::fixWhatStays()
 }
 
 //------------------------------------------------------------------------------
-/// The points of cells that are no elements stay, but on the boundary of a volume.
+/// The points of cells that are not elements stay, except on the boundary of a volume.
 void MovableMesh::fixHeld(const std::vector<unsigned char>& held)
 {
   this->Fixed.assign(this->distributed().localPoints(), 0);
@@ -461,16 +461,15 @@ std::string MovableMesh::whyNoneIsFree(const std::string& boundaryRemedy) const
   if (coincident > 0)
   {
     return text + ". " + std::to_string(coincident) +
-      " points are at the place of another one, so that neighbouring elements are not connected: "
-      "switch Merge Coincident Points on, or run Clean to Grid first.";
+      " points coincide with another one, so that neighboring elements are not connected: switch "
+      "Merge Coincident Points on, or run Clean to Grid first.";
   }
   if (near > 0)
   {
     return text + ". " + std::to_string(near) +
-      " points nearly coincide with another one, the first is " +
+      " points nearly coincide with another one; the first is " +
       placeOf(this->Adapter.inputView(), first) +
-      ", so that neighbouring elements are not connected: run Clean to Grid with a tolerance "
-      "first.";
+      ", so that neighboring elements are not connected: run Clean to Grid with a tolerance first.";
   }
   return noneIsFree(used, onBoundary, this->SlidingFixed, boundaryRemedy);
 }
@@ -581,9 +580,8 @@ std::vector<double> MovableMesh::settle(const std::vector<double>& points, std::
   {
     return settled;
   }
-  note =
-    "The points stay where they are: so far from the origin coordinates have too few digits, and "
-    "rounded to these " +
+  note = "The points do not move: this far from the origin, coordinates have too few digits, and "
+         "after rounding " +
     std::to_string(count) +
     " elements would not be valid. Create the "
     "mesh near the origin.";

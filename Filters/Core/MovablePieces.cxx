@@ -79,8 +79,8 @@ void MovableMesh::divide(const MeshPiece& given)
 }
 
 //------------------------------------------------------------------------------
-/// Throws Error, on all processes, where parts of the mesh overlap.
-/// @param mesh the local cells, of which all at an own point are here; null without one
+/// Throws Error, on all processes, if parts of the mesh overlap.
+/// @param mesh the local cells, including all cells at an owned point; null without one
 void MovableMesh::requireOneLayer(const Mesh* mesh, const std::vector<signed char>& validity) const
 {
   const DistributedMesh& all = this->distributed();
@@ -99,7 +99,7 @@ void MovableMesh::requireOneLayer(const Mesh* mesh, const std::vector<signed cha
   {
     return;
   }
-  // The first one by the number of its point, which all processes agree on.
+  // The first one in the order of point numbers, on which all processes agree.
   struct First
   {
     Index number;
@@ -116,12 +116,11 @@ void MovableMesh::requireOneLayer(const Mesh* mesh, const std::vector<signed cha
   std::ostringstream place;
   place << "(" << first.place[0] << ", " << first.place[1] << ", " << first.place[2] << ")";
   requireNoOverlap(facets, this->dimension() == 3 ? Dimension::Volume : Dimension::Planar,
-    place.str(),
-    ", or switch Reproducible Order off, which keeps parts with points of their own apart");
+    place.str(), ", or switch Reproducible Order off to keep parts with different points apart");
 }
 
 //------------------------------------------------------------------------------
-/// Whether the cells list their points in one order, and which.
+/// Tests whether the cells list their points in a consistent order, and finds it.
 void MovableMesh::checkOrder()
 {
   const MeshView& view = this->distributed().view();
@@ -144,7 +143,7 @@ void MovableMesh::checkOrder()
   }
   this->requireOneLayer(mesh.get(), validity);
   const Orientation found = orientation(this->group(), pieces, validities);
-  // As on one process: a mesh with more inverted elements than others is not reversed by that.
+  // As on one process, a majority of inverted elements alone does not make a mesh reversed.
   this->Adapter.mesh().setMirrored(found.state == Orientation::Reversed);
   this->Spread->inverted = this->mirrored() ? found.positiveCells : found.negativeCells;
   RankOrder order;
@@ -155,10 +154,11 @@ void MovableMesh::checkOrder()
   if (found.disagreeing > 0 || (found.reversedParts > 0 && found.reversedParts < found.parts))
   {
     throw OppositeOrders(
-      (found.disagreeing > 0 ? "Neighbouring cells list their points in opposite orders"
+      (found.disagreeing > 0 ? "Neighboring cells list their points in opposite orders"
                              : std::to_string(found.reversedParts) + " of " +
             std::to_string(found.parts) + " connected parts of the mesh are reversed") +
-      ": gather the mesh on one process, in ParaView by Aggregate Dataset, with Reproducible Order "
+      ": gather the mesh on one process, in ParaView with Aggregate Dataset, with Reproducible "
+      "Order "
       "off, or let Element Quality reorder the cells (Reorient) first.");
   }
 }
@@ -227,7 +227,7 @@ std::vector<double> MovableMesh::leastOf(const std::vector<double>& ofPiece, dou
     }
     return least;
   }
-  // The owner may have a point from another piece: the least by way of all processes.
+  // The owner may have a point from another piece: finds the smallest across all processes.
   const DistributedMesh& mesh = this->distributed();
   struct Value
   {
@@ -285,7 +285,7 @@ std::vector<Index> MovableMesh::pointIds() const
   }
   const std::vector<double> least = this->leastOf(ofPiece, std::numeric_limits<double>::infinity());
   std::vector<Index> ids(least.begin(), least.end());
-  // Each id goes to one process, which counts its points.
+  // Each id is sent to one process, which counts its points.
   const auto ranks = static_cast<std::uint64_t>(this->group().size());
   std::vector<std::vector<Index>> sent(this->group().size());
   for (Index p = 0; p < mesh.localPoints(); ++p)
@@ -307,7 +307,7 @@ std::vector<Index> MovableMesh::pointIds() const
     this->group().maximum(twice == received.end() ? std::numeric_limits<Index>::lowest() : *twice);
   if (some)
   {
-    throw Error("Points at different places have the global id " + std::to_string(wrong) +
+    throw Error("Points at different positions have the global id " + std::to_string(wrong) +
       ": run Generate Global Ids again.");
   }
   return ids;
@@ -316,12 +316,12 @@ std::vector<Index> MovableMesh::pointIds() const
 //------------------------------------------------------------------------------
 namespace
 {
-/// A point that ranks without an element at it ask for.
+/// A point that is requested by ranks without an element at it.
 struct PointQuery
 {
   std::array<double, 3> place;
-  Index given; ///< the global id where these identify points, else 0
-  Index id;    ///< the answer, or the place of the question
+  Index given; ///< the global id if global ids identify points, otherwise 0
+  Index id;    ///< the answer, or the index of the request
 
   bool operator<(const PointQuery& other) const
   {
@@ -366,7 +366,7 @@ std::vector<Index> MovableMesh::idsOfPiece(const std::vector<Index>& ids) const
   {
     return ofPiece;
   }
-  // Points are found by what identifies them.
+  // Points are found by their identifying data.
   vtkDataArray* given =
     this->MergePoints || !this->Input ? nullptr : this->Input->GetPointData()->GetGlobalIds();
   const std::size_t ranks = static_cast<std::size_t>(this->group().size());
@@ -411,7 +411,7 @@ std::vector<unsigned char> MovableMesh::markedOfPiece(const std::vector<Index>& 
 {
   const std::vector<unsigned char> local = this->anyOf(this->Spread->marked);
   std::vector<unsigned char> marked(idsOfPiece.size(), 0);
-  std::vector<Index> own, all; // of points without an element here
+  std::vector<Index> own, all; // for points without an element here
   for (std::size_t p = 0; p < marked.size(); ++p)
   {
     const Index at = this->distributed().localOfPiece()[p];

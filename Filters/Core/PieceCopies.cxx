@@ -41,7 +41,7 @@ void PieceCopies::require(const PieceItem& a, const PieceItem& b)
   if (finite && !areCopies(x, this->shortestAt(a), y, this->shortestAt(b)))
   {
     const double id = piece->GetPointData()->GetGlobalIds()->GetComponent(a.id, 0);
-    throw Error("Points at different places have the global id " +
+    throw Error("Points at different positions have the global id " +
       std::to_string(static_cast<Index>(id)) + ": run Generate Global Ids again.");
   }
 }

@@ -28,7 +28,7 @@
 
 namespace tautline
 {
-/// What a process gets for a piece, or of a mesh.
+/// The data that a process receives for a piece or from a mesh.
 struct PieceResults::Package
 {
   int process = FirstProcess, group = 0;
@@ -43,7 +43,7 @@ constexpr char PointsColumn[] = "Tautline points";
 constexpr char ActiveColumn[] = "Tautline active";
 
 //------------------------------------------------------------------------------
-/// The arrays that a result has and its mesh does not.
+/// The arrays that a result has and its mesh lacks.
 std::vector<vtkAbstractArray*> newArrays(vtkFieldData* result, vtkFieldData* mesh)
 {
   std::vector<vtkAbstractArray*> found;
@@ -97,8 +97,8 @@ void unpackTable(vtkTable* table, vtkDataSetAttributes* data)
 }
 
 //------------------------------------------------------------------------------
-/// Sends the names of arrays in their order, and their types. Messages of data sets keep neither:
-/// active arrays come first in them, and a signed char becomes a char.
+/// Sends the names of arrays in order, and their types. Messages with data sets preserve neither:
+/// active arrays come first, and a signed char becomes a char.
 void sendLayout(vtkMultiProcessStream& stream, vtkDataSetAttributes* data)
 {
   stream << data->GetNumberOfArrays();
@@ -109,7 +109,7 @@ void sendLayout(vtkMultiProcessStream& stream, vtkDataSetAttributes* data)
   }
 }
 
-/// The array itself, or a copy of the type.
+/// The array itself, or a copy with the given type.
 vtkSmartPointer<vtkAbstractArray> ofType(vtkAbstractArray* array, int type)
 {
   if (!vtkDataArray::SafeDownCast(array) || array->GetDataType() == type)
@@ -121,7 +121,7 @@ vtkSmartPointer<vtkAbstractArray> ofType(vtkAbstractArray* array, int type)
   return copy;
 }
 
-/// Gives the arrays the order and types of sendLayout().
+/// Restores the order and types of the arrays sent by sendLayout().
 void restoreLayout(vtkMultiProcessStream& stream, vtkDataSetAttributes* data)
 {
   vtkNew<vtkCellData> received;
@@ -173,7 +173,7 @@ Vec3 centerOf(vtkDataSet* mesh, vtkIdType cell, vtkIdList* ids)
   return (1.0 / static_cast<double>(std::max<vtkIdType>(ids->GetNumberOfIds(), 1))) * sum;
 }
 
-/// The process that has the cell of the old mesh nearest to a place.
+/// The process with the old cell nearest to a given position.
 class NearestOwner
 {
 public:
@@ -276,7 +276,7 @@ PieceResults::Packages PieceResults::packValues(vtkDataObject* result) const
     if (!mesh || data->GetNumberOfPoints() != mesh->GetNumberOfPoints() ||
       data->GetNumberOfCells() != mesh->GetNumberOfCells())
     {
-      throw Error("The result is not on the points and cells of the input.");
+      throw Error("The result does not match the points and cells of the input.");
     }
     auto* points = vtkPointSet::SafeDownCast(data);
     auto* before = vtkPointSet::SafeDownCast(mesh);
@@ -349,7 +349,8 @@ PieceResults::Packages PieceResults::packCells(vtkDataObject* result) const
 }
 
 //------------------------------------------------------------------------------
-/// The packages of the first process go to those they are for. @return those of this process
+/// Sends the packages of the first process to their destinations. @return the packages for this
+/// process
 PieceResults::Packages PieceResults::exchange(Packages& packages) const
 {
   const int rank = this->Controller->GetLocalProcessId();

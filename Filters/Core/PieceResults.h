@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PieceResults.h
- * @brief Sends what the first process has computed for a whole mesh to the pieces it came from.
+ * @brief Sends the results that the first process has computed for a whole mesh to its pieces.
  */
 #ifndef tautline_PieceResults_h
 #define tautline_PieceResults_h
@@ -21,7 +21,7 @@ namespace tautline
 {
 constexpr int FirstProcess = 0;
 
-/// A piece that a process announces.
+/// The sizes of a piece, announced by its process.
 struct PieceSize
 {
   int mesh, group;
@@ -29,11 +29,11 @@ struct PieceSize
   Index points;
 };
 
-/// A mesh on the first process, with the pieces of all processes in their order.
+/// A mesh on the first process, with the pieces of all processes in order.
 struct GatheredGroup
 {
   std::vector<vtkSmartPointer<vtkDataSet>> pieces;
-  std::vector<int> processes; ///< that have them
+  std::vector<int> processes; ///< the processes that have the pieces
   WholeMesh whole;
 };
 
@@ -43,32 +43,32 @@ struct GatheredMesh
   std::vector<GatheredGroup> groups;
 };
 
-/// The text of the first process, on all. Collective.
+/// Sends the text of the first process to all. Collective.
 TAUTLINECORE_EXPORT std::string shareText(
   vtkMultiProcessController* controller, const std::string& text);
 
-/// The rows of an array for points or cells with these numbers in it; 0 or "" for those below 0.
+/// The rows of an array with these indices; 0 or "" for negative indices.
 TAUTLINECORE_EXPORT vtkSmartPointer<vtkAbstractArray> rowsOf(
   vtkAbstractArray* array, const std::vector<vtkIdType>& numbers);
 
 /**
  * @class tautline::PieceResults
- * @brief The pieces of a mesh that get results.
+ * @brief The pieces of a mesh that receive results.
  */
 class PieceResults
 {
 public:
   /**
-   * @param input what this process has of the mesh
+   * @param input the part of the mesh on this process
    * @param pieces the pieces in it
-   * @param gathered the whole, on the first process
+   * @param gathered the whole mesh, on the first process
    */
   PieceResults(vtkMultiProcessController* controller, vtkDataObject* input,
     const std::vector<GroupedPiece>& pieces, const GatheredMesh& gathered);
 
   /**
    * @brief Fills the output of each process. Collective; throws Error on all processes.
-   * @param result that of the whole mesh; null on all but the first process
+   * @param result for the whole mesh; null on all processes but the first
    * @param output of the class of the input
    */
   void distribute(GatheredResult kind, vtkDataObject* result, vtkDataObject* output) const;

@@ -16,7 +16,7 @@ std::string counted(Index count, const std::string& noun)
   return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
 }
 
-/// Without a seam, where only ghost cells have coincident points.
+/// Without a seam if only ghost cells have coincident points.
 std::string onSeams(const CoincidentPoints& points)
 {
   return points.seams > 0 ? " on " + counted(points.seams, "seam")
@@ -24,7 +24,8 @@ std::string onSeams(const CoincidentPoints& points)
                           : " of ghost cells";
 }
 
-/// The duplicates without those of cells that do not count, as a ghost is one of its original.
+/// The duplicates without cells that do not count, for example ghosts, which duplicate their
+/// originals.
 std::vector<DuplicateCell> countedDuplicates(
   const std::vector<DuplicateCell>& duplicates, const unsigned char* skip)
 {
@@ -33,7 +34,7 @@ std::vector<DuplicateCell> countedDuplicates(
     return duplicates;
   }
   std::vector<DuplicateCell> counted;
-  std::map<Index, Index> instead; // the first cell that counts, of an original that does not
+  std::map<Index, Index> instead; // the first counted duplicate of an original that does not count
   for (const DuplicateCell& duplicate : duplicates)
   {
     if (skip[duplicate.cell])
@@ -53,7 +54,7 @@ std::vector<DuplicateCell> countedDuplicates(
   return counted;
 }
 
-/// Why facets stay apart.
+/// The reason why facets stay apart.
 std::string describeApart(const CoincidentPoints& points, const Mesh& mesh)
 {
   return points.apart() == 0
@@ -71,15 +72,15 @@ std::string describeApart(
     return "";
   }
   const std::string facet = dimension == Dimension::Volume ? "face" : "edge";
-  std::string text = counted(points.apart(), facet) + " at the place of another one stay" +
-    (points.apart() == 1 ? "s" : "") + " apart, the first at " + first + ":";
+  std::string text = counted(points.apart(), facet) + " coincident with another one stay" +
+    (points.apart() == 1 ? "s" : "") + " apart; the first is at " + first + ":";
   const auto add = [&text](Index count, const char* reason)
   { text += count > 0 ? " " + std::to_string(count) + " " + reason + "," : std::string(); };
   add(points.crowded, "would have three or more cells");
-  add(points.overlapping, "have both cells on one side, which overlap");
-  add(points.collapsing, "are of a cell that would have a point twice");
+  add(points.overlapping, "have both cells on one side, so that they overlap");
+  add(points.collapsing, "belong to a cell that would have a point twice");
   text.back() = '.';
-  return text + " Repair the mesh there, or choose the points to merge by Clean to Grid.";
+  return text + " Repair the mesh there, or merge chosen points with Clean to Grid.";
 }
 
 //------------------------------------------------------------------------------
@@ -87,8 +88,9 @@ std::string describeNear(Index near, const std::string& first)
 {
   return near == 0 ? ""
                    : counted(near, "point") +
-      " of the boundary nearly coincide with another one, the first is " + first +
-      ": the elements there are not connected; Clean to Grid with a tolerance merges such points.";
+      " of the boundary nearly coincide with another one; the first is " + first +
+      ": the elements there are not connected; run Clean to Grid with a tolerance to merge such "
+      "points.";
 }
 
 //------------------------------------------------------------------------------
@@ -108,7 +110,7 @@ std::string describeMerged(const CoincidentPoints& points, const Mesh& mesh)
   {
     text = counted(points.merged, "coincident point") + onSeams(points) +
       (points.merged == 1 ? " was" : " were") +
-      " treated as one with the point at the same place, the first is " +
+      " treated as one with the point at the same position; the first is " +
       placeOf(mesh.view(), points.first) +
       "; switch Merge Coincident Points off to keep them apart.";
   }
@@ -121,9 +123,9 @@ std::string describeCopies(Index copies)
 {
   return copies == 0 ? ""
                      : counted(copies, "cell") + (copies == 1 ? " is a copy" : " are copies") +
-      " of another one, as where parts of the mesh overlap: " +
+      " of another one, for example where parts of the mesh overlap: " +
       (copies == 1 ? "it counts" : "they count") +
-      " once, and their points move alike. Clean Cells to Grid removes such cells.";
+      " once, and their points move together. Run Clean Cells to Grid to remove such cells.";
 }
 
 //------------------------------------------------------------------------------
@@ -135,9 +137,9 @@ void requireNoOverlap(
     return;
   }
   throw Error(counted(facets, dimension == Dimension::Volume ? "face" : "edge") +
-    (facets == 1 ? " has" : " have") + " two elements on the same side, the first at " + place +
+    (facets == 1 ? " has" : " have") + " two elements on the same side; the first is at " + place +
     ": parts of the mesh overlap, and the boundary between them cannot be found. Remove one of the "
-    "parts, for example by Connectivity and Threshold" +
+    "parts, for example with Connectivity and Threshold" +
     remedy + ".");
 }
 
@@ -154,10 +156,11 @@ std::string describeJoined(const JoinedCopies& copies)
   }
   if (copies.apart > 0)
   {
-    text << (copies.joined > 0 ? " " : "") << counted(copies.apart, "global id")
-         << (copies.apart == 1 ? " is" : " are")
-         << " at places that are too far apart to be joined: where they are copies of one point, "
-            "the mesh is open there. Make their places equal, or run Generate Global Ids again.";
+    text
+      << (copies.joined > 0 ? " " : "") << counted(copies.apart, "global id")
+      << (copies.apart == 1 ? " is" : " are")
+      << " at positions that are too far apart to be joined: if they are copies of one point, the "
+         "mesh is open there. Make their coordinates equal, or run Generate Global Ids again.";
   }
   return text.str();
 }
@@ -169,7 +172,7 @@ std::string describeSeams(const CoincidentPoints& points, const Mesh& mesh)
   if (points.merged > 0)
   {
     text = counted(points.merged, "point") + onSeams(points) +
-      (points.merged == 1 ? " is" : " are") + " at the place of another one, the first is " +
+      (points.merged == 1 ? " coincides" : " coincide") + " with another one; the first is " +
       placeOf(mesh.view(), points.first) +
       ": the elements there are not connected. Filters whose result depends on it treat these "
       "points as one (Merge Coincident Points); Clean to Grid merges them.";
@@ -195,7 +198,7 @@ void requireEqualValues(
       if (!(a == b) && (a == a || b == b))
       {
         throw Error("Points " + std::to_string(one) + " and " + std::to_string(p) +
-          " are at the same place and are treated as one, but have different " + values + " (" +
+          " coincide and are treated as one, but have different " + values + " (" +
           (array->GetName() ? array->GetName() : "") +
           "): make them equal, or switch Merge Coincident Points off.");
       }
@@ -222,7 +225,7 @@ std::string describeDuplicates(const std::vector<DuplicateCell>& found, const un
     (duplicates.size() == 1 ? " has" : " have") + " the same points as another one: ";
   for (std::size_t i = 0; i < duplicates.size() && i < listed; ++i)
   {
-    text += (i > 0 ? ", " : "") + std::to_string(duplicates[i].cell) + " (those of " +
+    text += (i > 0 ? ", " : "") + std::to_string(duplicates[i].cell) + " (same as " +
       std::to_string(duplicates[i].original) + ")";
   }
   return text + (duplicates.size() > listed ? ", ..." : "") + ".";

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PointMerge.h
- * @brief Coincident points on the seams of a mesh in pieces: what is done with them, in words, and
- * values for all of them.
+ * @brief Coincident points on the seams of a mesh in pieces: sentences that describe their
+ * treatment, and common values for merged points.
  */
 #ifndef tautline_PointMerge_h
 #define tautline_PointMerge_h
@@ -22,45 +22,45 @@ class vtkDataArray;
 namespace tautline
 {
 /**
- * @brief Sentences for the user on points that are treated as one, and on those that coincide but
+ * @brief Sentences for the user on points that are treated as one, and on coincident points that
  * stay apart; "" if there are none.
  * @param mesh before its points were merged
  */
 TAUTLINECORE_EXPORT std::string describeMerged(const CoincidentPoints& points, const Mesh& mesh);
 
-/// A sentence on cells that are copies of other ones and count once with them, or "".
+/// A sentence on cells that are copies of other cells and are counted once, or "".
 TAUTLINECORE_EXPORT std::string describeCopies(Index copies);
 
 /**
- * @brief Throws Error if two cells are on one side of a facet that no other cell has.
- * @param place of the first point, as placeOf() gives it
+ * @brief Throws Error if two cells are on the same side of a facet that no other cell has.
+ * @param place of the first point, in the format of placeOf()
  */
 TAUTLINECORE_EXPORT void requireNoOverlap(
   Index facets, Dimension dimension, const std::string& place, const std::string& remedy = "");
 
-/// Sentences on copies of points that were joined by their global ids, and on those that are too
-/// far apart for it; or "".
+/// Sentences on copies of points that were joined by their global ids, and on copies that are too
+/// far apart to be joined; or "".
 TAUTLINECORE_EXPORT std::string describeJoined(const JoinedCopies& copies);
 
-/// The same for a mesh whose points are not merged: how many, where, and what they do.
+/// Sentences on coincident points of a mesh whose points are not merged: their number, the first
+/// position, and the consequence.
 TAUTLINECORE_EXPORT std::string describeSeams(const CoincidentPoints& points, const Mesh& mesh);
 
 /**
- * @brief A sentence on the facets that stay apart though they are at the place of another one, or
- * "".
- * @param first the place of the first
+ * @brief A sentence on facets that coincide with another one but stay apart, or "".
+ * @param first the position of the first one
  */
 TAUTLINECORE_EXPORT std::string describeApart(
   const CoincidentPoints& points, Dimension dimension, const std::string& first);
 
 /// A sentence on points that nearly coincide with another one, or "".
-/// @param first the place of the first
+/// @param first the position of the first one
 TAUTLINECORE_EXPORT std::string describeNear(Index near, const std::string& first);
 
 /// "point 17 at (0.5, 0, 1)"
 TAUTLINECORE_EXPORT std::string placeOf(const MeshView& view, Index point);
 
-/// Sets a flag where one of the points that are one has it, for all of them.
+/// Sets a flag for all points of a merged group if one of them has it.
 template <class Flag>
 void unite(std::vector<Flag>& flags, const std::vector<Index>& representative)
 {
@@ -90,17 +90,17 @@ void spread(
 }
 
 /**
- * @brief Throws Error if the values of points that are one differ.
- * @param array of points; may be null
- * @param values what they are, for the message: "displacements"
+ * @brief Throws Error if the values of merged points differ.
+ * @param array a point array; may be null
+ * @param values their name in the message, for example "displacements"
  */
 TAUTLINECORE_EXPORT void requireEqualValues(
   vtkDataArray* array, const std::vector<Index>& representative, const char* values);
 
 /**
- * @brief Throws Error if the mesh has cells with the same points as another one: they would count
- * twice.
- * @param skip one flag per cell: it does not count; may be null
+ * @brief Throws Error if the mesh has duplicate cells (with the same points as another cell), which
+ * would count twice.
+ * @param skip one flag per cell, set for cells that do not count; may be null
  */
 TAUTLINECORE_EXPORT void requireDistinctCells(
   const Mesh& mesh, const unsigned char* skip = nullptr);

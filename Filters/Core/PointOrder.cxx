@@ -11,7 +11,7 @@ namespace tautline
 {
 namespace
 {
-/// Of the information of a mesh: a PointOrder.
+/// Key of a PointOrder in the information of a mesh.
 vtkInformationIntegerKey* orderKey()
 {
   static vtkInformationIntegerKey* key = vtkInformationIntegerKey::MakeKey("POINTS", "tautline");
@@ -44,7 +44,7 @@ PointOrder commonOrder(vtkDataSet* mesh, vtkDataSet* other)
   {
     return PointOrder::Given;
   }
-  // What was in one place is in the order of its ids if they increase.
+  // A mesh from a single place is in the order of its ids if they increase.
   const auto byId = [](vtkDataSet* set, PointOrder order)
   {
     vtkDataArray* ids = set->GetPointData()->GetGlobalIds();

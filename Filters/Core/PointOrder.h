@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PointOrder.h
- * @brief What is known of the order of points after a mesh was put together of its pieces.
+ * @brief The origin of the point order of a mesh that was assembled from pieces.
  */
 #ifndef tautline_PointOrder_h
 #define tautline_PointOrder_h
@@ -12,25 +12,26 @@ class vtkDataSet;
 
 namespace tautline
 {
-/// Where the order of the points of a mesh is from.
+/// The origin of the point order of a mesh.
 enum class PointOrder : int
 {
-  Given,       ///< the source of the mesh, also with one process
+  Given,       ///< the source of the mesh; always with one process
   ById,        ///< the global ids
-  Coordinates, ///< assemble() without global ids: one process may have another order
-  Shared       ///< the mesh that assemble() got as `like`
+  Coordinates, ///< assemble() without global ids: may differ from the serial order
+  Shared       ///< the mesh passed to assemble() as `like`
 };
 
-/// Notes the order of a mesh that assemble() has put together. @param shared that of `like`
+/// Records the order of a mesh that assemble() has made. @param shared whether it is the order of
+/// `like`
 void setPointOrder(vtkDataSet* mesh, bool shared);
 
-/// Where the order of the points is from: as assemble() has made the mesh, else Given.
+/// The origin of the point order as recorded by assemble(); otherwise Given.
 TAUTLINECORE_EXPORT PointOrder pointOrder(vtkDataSet* mesh);
 
 /**
- * @brief What points of two meshes with the same number have in common: Given, or the global ids,
- * or, Coordinates, nothing. Pieces of `other` that were put together as those of the mesh (Shared)
- * count as if by ids, as only their numbers of points and cells are compared.
+ * @brief The common order of the points of two meshes: Given, by global ids, or Coordinates if
+ * there is none. If the pieces of `other` were assembled like the pieces of the mesh (Shared), the
+ * order counts as by ids, because only the numbers of points and cells are compared.
  */
 TAUTLINECORE_EXPORT PointOrder commonOrder(vtkDataSet* mesh, vtkDataSet* other);
 }

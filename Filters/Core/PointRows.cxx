@@ -20,14 +20,14 @@ namespace
 {
 constexpr char Separator = '\0';
 
-/// What identifies an array on all ranks.
+/// Identifies an array on all ranks.
 std::string signatureOf(vtkAbstractArray* array)
 {
   return std::string(array->GetName()) + "\n" + std::to_string(array->GetDataType()) + "\n" +
     std::to_string(array->GetNumberOfComponents());
 }
 
-/// The process that gives the values of each point that is asked for.
+/// The process that provides the values of each requested point.
 class Directory
 {
 public:
@@ -53,7 +53,7 @@ public:
     std::sort(this->Entries.begin(), this->Entries.end());
   }
 
-  /// Per rank the wanted numbers that it has. Collective.
+  /// Per rank, the requested numbers that it has. Collective.
   std::vector<std::vector<Index>> find(const std::vector<Index>& wanted) const
   {
     std::vector<std::vector<Index>> asked(this->Group.size());
@@ -121,7 +121,7 @@ Bytes packRows(vtkPointData* data, const std::vector<vtkIdType>& points)
   return Bytes(bytes->GetPointer(0), bytes->GetPointer(0) + bytes->GetNumberOfValues());
 }
 
-/// Puts rows that came as bytes where they belong.
+/// Copies rows received as bytes to their destinations.
 void takeRows(const Bytes& bytes, const std::vector<Index>& numbers,
   const std::vector<Index>& wanted, vtkPointData* rows)
 {
@@ -211,7 +211,7 @@ vtkSmartPointer<vtkPointData> pointRows(RankGroup& group, vtkPointData* data,
   const std::vector<vtkIdType> none(wanted.size(), -1);
   for (int i = 0; i < rows->GetNumberOfArrays(); ++i)
   {
-    rows->AddArray(rowsOf(data->GetAbstractArray(i), none)); // in place of that of its name
+    rows->AddArray(rowsOf(data->GetAbstractArray(i), none)); // replaces the array of this name
   }
   for (std::size_t r = 0; r < received.size(); ++r)
   {

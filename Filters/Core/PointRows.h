@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PointRows.h
- * @brief The point data of a mesh in pieces, where another process needs them.
+ * @brief Sends the point data of a mesh in pieces to the processes that need them.
  */
 #ifndef tautline_PointRows_h
 #define tautline_PointRows_h
@@ -18,18 +18,18 @@ class vtkPointData;
 
 namespace tautline
 {
-/// Removes the arrays that not all pieces with points have, with the same type and number of
+/// Keeps only the arrays that all pieces with points have with the same type and number of
 /// components. Collective. @param points of this piece
 TAUTLINECORE_EXPORT void keepCommonArrays(RankGroup& group, vtkPointData* data, Index points);
 
 /**
- * @brief The values of points, a row for each, from the pieces that have these. Collective.
+ * @brief The values of points, one row each, from the pieces that have them. Collective.
  *
- * Where several pieces have a point, the values are those of the lowest rank.
+ * If several pieces have a point, the values come from the lowest rank.
  * @param data of this piece: the same arrays on all ranks with points, see keepCommonArrays()
- * @param numbers per point of the piece: the same on all ranks for the same point; below 0: it is
- * not asked for
- * @param wanted numbers that points of pieces have, in increasing order
+ * @param numbers per point of the piece, the same on all ranks for the same point; negative if it
+ * is not requested
+ * @param wanted requested numbers of points of the pieces, in increasing order
  * @return the arrays of `data`, in their order
  */
 TAUTLINECORE_EXPORT vtkSmartPointer<vtkPointData> pointRows(RankGroup& group, vtkPointData* data,

@@ -26,7 +26,7 @@ namespace tautline
 namespace
 {
 /// Gives the solid the point and cell arrays of a data set; the added points have zeros.
-/// @param sources per cell of the solid the cell of the data set
+/// @param sources per cell of the solid, the cell of the data set
 void giveArrays(vtkDataSet* from, const std::vector<Index>& sources, vtkUnstructuredGrid* solid)
 {
   vtkPointData* points = solid->GetPointData();
@@ -77,7 +77,7 @@ PolyhedralMesh::PolyhedralMesh(const InputBlock& block, int threads)
 {
   if (this->Faces.extruded())
   {
-    throw Error("The mesh is plane: choose another preset, which improves its elements.");
+    throw Error("The mesh is planar: choose another preset, which improves its elements.");
   }
   this->Notice = this->Faces.notice();
   this->makeSolid();
@@ -146,7 +146,7 @@ ImproveFacesResult PolyhedralMesh::improve(
   BoundaryProperties properties = boundary;
   if (properties.motion == BoundaryMotion::Fixed && !properties.freeInvalid)
   {
-    // The sides of one layer are no boundary of it.
+    // The sides of a single layer do not count as its boundary.
     properties.motion = BoundaryMotion::Free;
     options.patchesStay = true;
   }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class tautline::PolyhedralMesh
- * @brief A data set of volumes whose points move by the measures of its faces.
+ * @brief A data set of volumes whose points are moved to improve the measures of its faces.
  *
- * What the boundary may do is found on a mesh of tetrahedra with the same boundary: each triangle
- * of a face with the center of its cell.
+ * The constraints on the boundary are found on a tetrahedral mesh with the same boundary, which
+ * joins each triangle of a face with the center of its cell.
  */
 #ifndef tautline_PolyhedralMesh_h
 #define tautline_PolyhedralMesh_h
@@ -28,8 +28,8 @@ namespace tautline
 class TAUTLINECORE_EXPORT PolyhedralMesh
 {
 public:
-  /// Throws Error for data sets that are no point sets, for plane meshes and surfaces, and for what
-  /// FaceMeshAdapter refuses.
+  /// Throws Error for data sets that are not point sets, for planar meshes and surfaces, and as
+  /// FaceMeshAdapter does.
   PolyhedralMesh(const InputBlock& block, int threads);
   ~PolyhedralMesh();
 
@@ -37,15 +37,15 @@ public:
   ImproveFacesResult improve(const BoundaryProperties& boundary, ImproveFacesOptions options);
 
   /// Gives the output the points of a result, in double precision, the array `Displacement` and the
-  /// cell array `Validity`, which it returns.
+  /// cell array `Validity`, which is also returned.
   std::vector<signed char> move(vtkPointSet* output, const ImproveFacesResult& result) const;
   /// The cell arrays non_orthogonality and face_skewness, with and without the ending `_before`.
   void addMeasures(vtkPointSet* output, const ImproveFacesResult& result) const;
 
-  /// The Validity of each cell of the data set at the input's points.
+  /// The validity of each cell of the data set with the points of the input.
   std::vector<signed char> validity() const { return this->validityAt(this->Faces.points()); }
   const FaceMesh& faces() const { return this->Faces.mesh(); }
-  /// What the boundary has for features, and remarks, as sentences.
+  /// Sentences on the features of the boundary, and remarks.
   const std::string& notice() const { return this->Notice; }
 
 private:
@@ -64,7 +64,7 @@ private:
 /// Whether a data object has polyhedra.
 TAUTLINECORE_EXPORT bool hasPolyhedra(vtkDataObject* input);
 
-/// What a result is, in sentences for the user.
+/// Describes a result in sentences for the user.
 TAUTLINECORE_EXPORT std::string summarize(const ImproveFacesResult& result);
 }
 #endif

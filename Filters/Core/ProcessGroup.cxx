@@ -64,13 +64,13 @@ protected:
     this->Controller->AllGather(&mine, lengths.data(), 1);
     std::partial_sum(lengths.begin(), lengths.end() - 1, offsets.begin() + 1);
     const vtkIdType total = offsets.back() + lengths.back();
-    if (total > std::numeric_limits<int>::max()) // all of them know
+    if (total > std::numeric_limits<int>::max()) // known on all processes
     {
-      throw Error("The processes would exchange more than 2 GiB at once, as MPI cannot: take a "
-                  "smaller mesh, or put it together first (Aggregate Dataset).");
+      throw Error("The processes would exchange more than 2 GiB at once, which MPI does not "
+                  "support: use a smaller mesh, or gather it first (Aggregate Dataset).");
     }
     Bytes joined(static_cast<std::size_t>(total) + 1);
-    char none = 0; // the address of nothing
+    char none = 0; // address of an empty message
     this->Controller->AllGatherV(
       own.empty() ? &none : own.data(), joined.data(), mine, lengths.data(), offsets.data());
     std::vector<Bytes> all;
@@ -93,7 +93,8 @@ protected:
 private:
   static constexpr int Tag = 7241;
 
-  /// Calls back for each part of a message that MPI can send at once; they arrive in order.
+  /// Calls the function for each part of a message that MPI can send at once; the parts arrive in
+  /// order.
   template <class Byte, class Callback>
   void forEachPart(Byte* bytes, std::size_t size, Callback&& callback)
   {
@@ -129,7 +130,7 @@ std::unique_ptr<RankGroup> makeProcessGroup()
   }
 #endif
   throw Error("There are " + std::to_string(controller->GetNumberOfProcesses()) +
-    " processes which cannot work together: they need MPI, and a VTK built with it.");
+    " processes that cannot communicate: MPI and a VTK built with MPI are required.");
 }
 
 //------------------------------------------------------------------------------

@@ -22,7 +22,7 @@ namespace tautline
 {
 namespace
 {
-int ofOneProcess = 0; // how many OneProcess there are
+int ofOneProcess = 0; // number of OneProcess objects
 }
 
 //------------------------------------------------------------------------------
@@ -114,10 +114,9 @@ void requireOneProcess(vtkDataObject* input)
   const int maximum = size > 0 ? *std::max_element(processes.begin(), processes.end()) : 0;
   if (maximum > 1)
   {
-    throw Error("The mesh is spread over " + std::to_string(maximum) +
-      " processes, and the boundary of a part is not that of the mesh: gather it on one process "
-      "first, "
-      "in ParaView by Aggregate Dataset.");
+    throw Error("The mesh is distributed over " + std::to_string(maximum) +
+      " processes, and the boundary of a part is not the boundary of the mesh: gather it on one "
+      "process first, in ParaView with Aggregate Dataset.");
   }
 }
 
@@ -137,7 +136,7 @@ Index cellsOf(vtkDataObject* input)
 [[noreturn]] void refuseProcesses(const std::string& filter, const std::string& having)
 {
   throw Error(filter + " does not support meshes on several processes, and " + having +
-    " have cells: gather the mesh on the first process, in ParaView by Aggregate Dataset with one "
+    " have cells: gather the mesh on the first process, in ParaView with Aggregate Dataset and one "
     "process, or run ParaView with one process.");
 }
 }
@@ -173,7 +172,7 @@ void requireFirstProcess(vtkAlgorithm* filter, int port, vtkDataObject* input, c
   vtkMultiProcessController* controller = severalProcesses();
   if (controller && controller->GetLocalProcessId() > 0 && cellsOf(input) > 0)
   {
-    refuseProcesses(name, "others than the first");
+    refuseProcesses(name, "processes other than the first");
   }
 }
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ProgressStep.h
- * @brief The progress of a filter while the kernel computes a part of its result.
+ * @brief Reports the progress of a filter while the kernel computes a part of its result.
  */
 #ifndef tautline_ProgressStep_h
 #define tautline_ProgressStep_h
@@ -14,13 +14,13 @@
 
 namespace tautline
 {
-/// Reports progress, 0 to 1, or what was reported before in this execution if that is more.
+/// Reports progress, 0 to 1, or the largest value reported before in this execution.
 inline void advance(vtkAlgorithm* algorithm, double fraction)
 {
   algorithm->UpdateProgress(std::clamp(fraction, algorithm->GetProgress(), 1.0));
 }
 
-/// Iterations after which one half is done, where only a large limit of their number is known.
+/// Iterations after which half is done, if only a large upper limit on their number is known.
 constexpr double UsualIterations = 8.0;
 
 /// The progress of an iteration without a known end.
@@ -31,8 +31,8 @@ inline double openEnded(double iterations, double half = UsualIterations)
 
 /**
  * @class tautline::ProgressStep
- * @brief While it exists, the loops of this thread move the progress of an algorithm from one
- * fraction to another, which it has at the end.
+ * @brief While it exists, the loops of this thread advance the progress of an algorithm from one
+ * fraction to another.
  */
 class ProgressStep
 {

@@ -11,13 +11,13 @@ namespace tautline
 namespace
 {
 /**
- * @brief partitionPoints() of the library TautlineSolvers, which is loaded here and not before: the
- * filters without a linear system need nothing else of it, and it brings PETSc. Throws NotDivided
- * where the library is not installed.
+ * @brief partitionPoints() of the library TautlineSolvers. The library is loaded here on demand,
+ * because filters without a linear system need nothing else from it and it depends on PETSc. Throws
+ * NotDivided if the library is not installed.
  */
 PartitionPoints loadPartitionPoints()
 {
-  // Called here, so that the run path of this library is searched; a loader of VTK has another.
+  // Called here, so that the run path of this library is searched, not VTK's.
   void* const library = dlopen(TAUTLINE_SOLVERS_LIBRARY, RTLD_NOW | RTLD_LOCAL);
   void* const found = library ? dlsym(library, partitionPointsSymbol) : nullptr;
   if (!found)
@@ -35,7 +35,7 @@ std::vector<int> ownersByGraph(
 {
   if (!group.communicator())
   {
-    throw Error("PT-Scotch needs processes that communicate by MPI: take a k-d tree.");
+    throw Error("PT-Scotch needs processes that communicate by MPI: use a k-d tree.");
   }
   // The k-d tree first, so that the graph is spread evenly while PT-Scotch divides it.
   MeshPiece spread = piece;
@@ -47,7 +47,7 @@ std::vector<int> ownersByGraph(
     group.agree();
     ofLocal = loadPartitionPoints()(mesh, group.communicator());
   }
-  catch (const NotDivided& error) // on all processes: the owners of the k-d tree stay
+  catch (const NotDivided& error) // on all processes: the owners by the k-d tree are kept
   {
     how = Redistribution::KdTree;
     why = std::string(" ") + error.what();
@@ -65,7 +65,7 @@ std::string dividedSentence(const RankGroup& group, Redistribution how, const st
 {
   return how == Redistribution::None
     ? ""
-    : "The mesh was divided anew among " + std::to_string(group.size()) + " processes" +
+    : "The mesh was redistributed among " + std::to_string(group.size()) + " processes" +
       (how == Redistribution::PtScotch ? " by PT-Scotch." : ".") + why;
 }
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Redistribution.h
- * @brief Whether and how a mesh is divided anew among the processes.
+ * @brief Redistribution of a mesh among the processes.
  */
 #ifndef tautline_Redistribution_h
 #define tautline_Redistribution_h
@@ -15,7 +15,7 @@
 
 namespace tautline
 {
-/// See vtkMeshMotionAlgorithm::SetRedistribute(); the numbers are those of the property.
+/// See vtkMeshMotionAlgorithm::SetRedistribute(); the values equal the values of the property.
 enum class Redistribution
 {
   None,
@@ -24,15 +24,16 @@ enum class Redistribution
 };
 
 /**
- * @brief The process that shall own each point of a piece, by PT-Scotch. Where it cannot divide the
- * mesh, by a k-d tree: then `how` becomes that, and `why` gets the message, behind a blank.
- * Collective. Throws Error if the processes do not communicate by MPI, and as DistributedMesh does.
- * @return per point; -1 for one that no cell has but ghosts
+ * @brief The process that will own each point of a piece, by PT-Scotch. If PT-Scotch cannot divide
+ * the mesh, a k-d tree is used: `how` is set accordingly, and `why` receives the message, after a
+ * blank. Collective. Throws Error if the processes do not communicate by MPI, and as
+ * DistributedMesh does.
+ * @return one per point; -1 for points that only ghost cells have
  */
 TAUTLINECORE_EXPORT std::vector<int> ownersByGraph(
   RankGroup& group, const MeshPiece& piece, Redistribution& how, std::string& why);
 
-/// "The mesh was divided anew among 3 processes by PT-Scotch.", and why it was not; "" for None.
+/// "The mesh was redistributed among 3 processes by PT-Scotch.", or why it was not; "" for None.
 TAUTLINECORE_EXPORT std::string dividedSentence(
   const RankGroup& group, Redistribution how, const std::string& why);
 }

@@ -31,7 +31,7 @@ std::string markName(int port)
 //------------------------------------------------------------------------------
 void addMarks(vtkDataSetAttributes* marked, vtkIdType count, int port, vtkDataSetAttributes* result)
 {
-  vtkNew<vtkUnsignedCharArray> marks; // VTK 9.1 sends signed ones as plain ones, another type
+  vtkNew<vtkUnsignedCharArray> marks; // VTK 9.1 sends signed char as char, a different type
   marks->SetName(markName(port).c_str());
   marks->SetNumberOfTuples(count);
   vtkDataArray* given = marked ? marked->GetArray(SelectedArray) : nullptr;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SelectionMarks.h
- * @brief What is selected of the pieces of a mesh, as arrays that can be put together, and as a
- * selection of the whole.
+ * @brief Converts selections on the pieces of a mesh to arrays that can be joined, and back to a
+ * selection on the whole mesh.
  */
 #ifndef tautline_SelectionMarks_h
 #define tautline_SelectionMarks_h
@@ -20,7 +20,7 @@ class vtkSelection;
 namespace tautline
 {
 /// Adds the marks of a piece as an array, zeros where nothing is selected.
-/// @param marked the attributes with what markSelected() has set, or null
+/// @param marked the attributes with the array of markSelected(), or null
 TAUTLINECORE_EXPORT void addMarks(
   vtkDataSetAttributes* marked, vtkIdType count, int port, vtkDataSetAttributes* result);
 
@@ -31,7 +31,7 @@ TAUTLINECORE_EXPORT void uniteMarks(
 /// Removes the marks of an input.
 TAUTLINECORE_EXPORT void removeMarks(vtkDataObject* whole, int port);
 
-/// A selection of what has marks.
+/// A selection of the marked points or cells.
 TAUTLINECORE_EXPORT vtkSmartPointer<vtkSelection> selectionOf(vtkDataObject* whole, int port);
 }
 #endif

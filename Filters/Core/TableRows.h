@@ -26,13 +26,13 @@ namespace tautline
 class TAUTLINECORE_EXPORT TableRows
 {
 public:
-  /// Begins a row. @param block a name for the text column `Block`; "": there is no such column
+  /// Begins a row. @param block the value of the text column `Block`; "" for no such column
   void begin(const std::string& block = "");
-  /// Adds a value to the row. Rows have the same columns in the same order.
+  /// Adds a value to the row. All rows have the same columns in the same order.
   void add(std::string_view column, double value);
   void addText(std::string_view column, std::string_view value);
-  /// Adds a column of many rows, value(i) of row i. Follows begin(); all columns of a row are then
-  /// added so, with the same number of rows.
+  /// Adds a column for many rows, with value(i) in row i. Call begin() first; all columns are then
+  /// added in this way, with the same number of rows.
   template <class Value>
   void addMany(std::string_view column, std::size_t rows, const Value& value)
   {

@@ -18,8 +18,8 @@ namespace tautline
 namespace
 {
 /**
- * One tuple per cell from an array of points or cells; a point array is averaged over the points of
- * each cell.
+ * One tuple per cell from a point or cell array; a point array is averaged over the points of each
+ * cell.
  */
 std::vector<double> perCell(
   vtkDataArray* array, int association, const MeshView& view, const char* what)
@@ -34,7 +34,7 @@ std::vector<double> perCell(
   if (array->GetNumberOfTuples() != expected)
   {
     throw Error(std::string("The array '") + (array->GetName() ? array->GetName() : "") + "' has " +
-      std::to_string(array->GetNumberOfTuples()) + " tuples, the mesh has " +
+      std::to_string(array->GetNumberOfTuples()) + " tuples; the mesh has " +
       std::to_string(expected) + (onPoints ? " points." : " cells."));
   }
   const int components = array->GetNumberOfComponents();
@@ -61,7 +61,7 @@ std::vector<double> perCell(
   return result;
 }
 
-/// Tensors of 6 (xx yy zz xy yz xz) or 9 components as 3 x 3 matrices.
+/// Converts tensors of 6 (xx yy zz xy yz xz) or 9 components to 3 x 3 matrices.
 std::vector<double> asMatrices(const std::vector<double>& values, int components)
 {
   if (components == 9)
@@ -70,7 +70,7 @@ std::vector<double> asMatrices(const std::vector<double>& values, int components
   }
   if (components != 6)
   {
-    throw Error("A metric tensor has 6 (xx yy zz xy yz xz) or 9 components, the array has " +
+    throw Error("A metric tensor has 6 (xx yy zz xy yz xz) or 9 components; the array has " +
       std::to_string(components) + ".");
   }
   constexpr int entry[9] = { 0, 3, 5, 3, 1, 4, 5, 4, 2 };
@@ -82,8 +82,7 @@ std::vector<double> asMatrices(const std::vector<double>& values, int components
   return matrices;
 }
 
-/// Lists the cells of the reference in the opposite order where `mesh` does, whose cells were
-/// oriented.
+/// Reverses the cells of the reference that were reversed in `mesh` by orientation.
 void orientAlike(const Mesh& mesh, MeshAdapter& reference)
 {
   const MeshView& view = mesh.view();

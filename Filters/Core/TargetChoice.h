@@ -17,14 +17,14 @@ class vtkDataSet;
 
 namespace tautline
 {
-/// An array and whether it is of points or cells (vtkDataObject::FIELD_ASSOCIATION_...).
+/// An array and its association, points or cells (vtkDataObject::FIELD_ASSOCIATION_...).
 struct ChosenArray
 {
   vtkDataArray* array = nullptr;
   int association = 0;
 };
 
-/// The target element and the data that define it; only those of the type are used.
+/// The target element and the data that define it; only the data for the type are used.
 struct TargetChoice
 {
   TargetType type = TargetType::Ideal;
@@ -34,22 +34,22 @@ struct TargetChoice
 };
 
 /**
- * @brief The targets chosen; none for TargetType::Ideal. Values of point arrays are averaged over
- * each cell. A reference mesh that is reversed throughout is taken as its mirror image. Throws
- * Error that names what is missing or does not fit.
+ * @brief The chosen targets; none for TargetType::Ideal. Values of point arrays are averaged over
+ * each cell. A reference mesh that is reversed throughout is treated as its mirror image. Throws
+ * Error if data are missing or do not fit.
  */
 TAUTLINECORE_EXPORT Targets makeTargets(const Mesh& mesh, const TargetChoice& choice, int threads);
 
-/// What the targets of TargetType::Size and Tensor are made from: one size, or a matrix of 3 x 3,
-/// per cell of the view. Throws Error as makeTargets().
+/// The values behind the targets of TargetType::Size and Tensor: one size, or a 3 x 3 matrix, per
+/// cell of the view. Throws Error as makeTargets().
 TAUTLINECORE_EXPORT std::vector<double> targetValues(
   const MeshView& view, const TargetChoice& choice);
-/// So many per cell.
+/// The number of values per cell.
 constexpr int targetComponents(TargetType type)
 {
   return type == TargetType::Size ? 1 : 9;
 }
-/// The targets of these types, from such values.
+/// The targets of these types from their values.
 TAUTLINECORE_EXPORT Targets targetsOf(
   const Mesh& mesh, TargetType type, const std::vector<double>& values);
 }

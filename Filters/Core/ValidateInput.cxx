@@ -51,7 +51,7 @@ namespace
 {
 constexpr const char* CheckSource = "Check the file or the program that made the mesh.";
 
-/// The number of points of each type that VTK has; corners for types of any order.
+/// The number of points of each VTK cell type; of corners for types of any order.
 CellSizes makeCellSizes()
 {
   CellSizes sizes;
@@ -62,7 +62,7 @@ CellSizes makeCellSizes()
       sizes.points[static_cast<std::size_t>(type)] = points;
     }
   };
-  // Types that no program writes any more, or whose size is not fixed, may list anything.
+  // Obsolete types, and types without a fixed size, may list any number of points.
   for (int type = VTK_EMPTY_CELL; type < VTK_NUMBER_OF_CELL_TYPES; ++type)
   {
     const bool exists = std::string(cellClassName(type)) != "UnknownClass";
@@ -122,18 +122,17 @@ std::string arrayProblem(
     if (array->GetNumberOfTuples() != expected)
     {
       return subject + "has " + std::to_string(array->GetNumberOfTuples()) +
-        " tuples, the mesh has " + std::to_string(expected) + " " + plural +
-        ": compute the array anew for this mesh, or leave it out (Pass Arrays).";
+        " tuples; the mesh has " + std::to_string(expected) + " " + plural +
+        ": compute the array again for this mesh, or leave it out (Pass Arrays).";
     }
     const bool ghosts = name == vtkDataSetAttributes::GhostArrayName();
     if (ghosts &&
       (!vtkUnsignedCharArray::SafeDownCast(array) || array->GetNumberOfComponents() != 1))
     {
       return subject +
-        "marks ghosts and has to be of type unsigned char with one component, it is "
-        "of type " +
+        "marks ghosts and must have type unsigned char and one component; its type is " +
         array->GetDataTypeAsString() + " with " + std::to_string(array->GetNumberOfComponents()) +
-        ": compute it anew (Ghost Cells), or leave it out (Pass Arrays).";
+        ": compute it again (Ghost Cells), or leave it out (Pass Arrays).";
     }
   }
   return "";
@@ -169,7 +168,7 @@ std::string nonFinite(vtkDataArray* values, int components, int threads)
 }
 
 //------------------------------------------------------------------------------
-/// The arrays of a cell array as plain ones, copied if VTK stores them otherwise.
+/// The arrays of a cell array as plain arrays, copied if VTK stores them differently.
 template <class Id, class ArrayT>
 const Id* plain(vtkDataArray* array, std::vector<Id>& copy)
 {
@@ -186,13 +185,13 @@ const Id* plain(vtkDataArray* array, std::vector<Id>& copy)
   return copy.data();
 }
 
-/// What the cells of one cell array must fulfil.
+/// The requirements on the cells of a cell array.
 struct CellRules
 {
   vtkUnsignedCharArray* types = nullptr; ///< null: each cell has at least `least` points
   Index least = 0;
   Index points = 0;    ///< of the mesh
-  Index firstCell = 0; ///< its number in the data set
+  Index firstCell = 0; ///< its index in the data set
   const char* name = "";
   int threads = 0;
 };
@@ -215,7 +214,7 @@ std::string cellProblemOf(vtkCellArray* cells, const CellRules& rules)
   { return "Cell " + std::to_string(rules.firstCell + cell); };
   if (count > 0 && offsets[0] != 0)
   {
-    return cellName(0) + " begins at place " + std::to_string(offsets[0]) +
+    return cellName(0) + " begins at position " + std::to_string(offsets[0]) +
       " of the connectivity, not at 0. " + CheckSource;
   }
 
@@ -229,7 +228,7 @@ std::string cellProblemOf(vtkCellArray* cells, const CellRules& rules)
     if (offsets[wrong + 1] < offsets[wrong])
     {
       return cellName(wrong) +
-        " has no proper place in the connectivity: its offsets descend from " +
+        " has an invalid range in the connectivity: its offsets descend from " +
         std::to_string(offsets[wrong]) + " to " + std::to_string(offsets[wrong + 1]) + ". " +
         CheckSource;
     }
@@ -239,7 +238,7 @@ std::string cellProblemOf(vtkCellArray* cells, const CellRules& rules)
         ", which does not exist. " + CheckSource;
     }
     const std::string name = rules.types ? cellClassName(type) : rules.name;
-    return cellName(wrong) + " is not a proper " + name + ": it lists " +
+    return cellName(wrong) + " is not a valid " + name + ": it lists " +
       std::to_string(offsets[wrong + 1] - offsets[wrong]) + " points. " + CheckSource;
   }
   if (count > 0 && static_cast<Index>(offsets[count]) != length)
@@ -327,8 +326,8 @@ std::string polyhedronProblem(vtkUnstructuredGrid* grid, int threads)
     if (!good)
     {
       return "The faces of cell " + std::to_string(cell) +
-        ", a polyhedron, are corrupt: they list points that the mesh does not have, or do not "
-        "end. " +
+        ", a polyhedron, are corrupt: they list points that the mesh does not have, or exceed the "
+        "array. " +
         CheckSource;
     }
   }
@@ -381,7 +380,7 @@ std::string polyDataProblem(vtkPolyData* poly, int threads)
   return "";
 }
 
-/// The number of points that dimensions stand for.
+/// The number of points for given dimensions.
 std::string dimensionProblem(const int dimensions[3], Index points)
 {
   Index expected = 1;
@@ -494,7 +493,7 @@ std::string dataSetProblem(vtkDataSet* data, const InputRules& rules)
   return problem;
 }
 
-/// A data object that is neither a data set nor composite, and how to make a mesh of it.
+/// A data object that is neither a data set nor composite, and how to convert it to a mesh.
 std::string typeProblem(vtkDataObject* data)
 {
   const char* remedy = "convert it to a mesh first";
@@ -577,7 +576,7 @@ std::string emptyInput(vtkDataObject* data, const char* needed)
     return "";
   }
   return std::string("The input has no ") + needed +
-    (ofPoints > 0 ? ", only points: make cells of them first, with Delaunay 2D or Delaunay 3D."
+    (ofPoints > 0 ? ", only points: create cells first, with Delaunay 2D or Delaunay 3D."
                   : ": apply the filters before it, or choose another input.");
 }
 
@@ -638,7 +637,7 @@ std::string selectionProblem(vtkSelection* selection, vtkDataObject* mesh)
                                       : "";
     }
     const bool ofPoints = node->GetFieldType() == vtkSelectionNode::POINT;
-    // Of composite data only the ids that no block can have are refused; VTK finds the block.
+    // For composite data only ids that no block can have are rejected; VTK finds the block.
     Index limit = 0;
     const auto count = [&](vtkDataSet* set)
     { return ofPoints ? set->GetNumberOfPoints() : set->GetNumberOfCells(); };
@@ -659,7 +658,7 @@ std::string selectionProblem(vtkSelection* selection, vtkDataObject* mesh)
         const std::string what = ofPoints ? "point" : "cell";
         return "The selection names " + what + " " + ids->GetVariantValue(k).ToString() +
           ", but the mesh has " + std::to_string(limit) + " " + what +
-          "s: it was made of another mesh, select again.";
+          "s: it was made on another mesh; select again.";
       }
     }
   }

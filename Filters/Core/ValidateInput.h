@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ValidateInput.h
- * @brief Checks what VTK hands over before any filter or writer touches it.
+ * @brief Checks input from VTK before a filter or writer uses it.
  *
  * VTK does not verify data objects: arrays may be shorter than the mesh, cells may list points that
- * do not exist. Reading such data ends in wrong results or in a crash. The check is linear in the
+ * do not exist. Reading such data leads to wrong results or a crash. The check is linear in the
  * size of the input, threaded, and reads each array of ids, offsets and types once (values of point
  * and cell arrays are not read).
  *
- * Checked are, for each data set:
- * - point and cell arrays: one tuple per point or cell; ghost arrays of the type VTK reads;
+ * For each data set, it checks
+ * - point and cell arrays: one tuple per point or cell; ghost arrays have the type that VTK reads;
  * - cell arrays: offsets that ascend from 0 to the length of the connectivity, ids of existing
  *   points, one cell type per cell, numbers of points that fit the type;
- * - polyhedra: streams of faces that end where the array ends, ids of existing points;
- * - structured data: as many points as the dimensions say, finite spacing, origin and coordinates;
- * - where requested, finite points.
+ * - polyhedra: face streams that end where the array ends, ids of existing points;
+ * - structured data: number of points according to the dimensions, finite spacing, origin and
+ *   coordinates;
+ * - on request, finite points.
  */
 #ifndef tautline_ValidateInput_h
 #define tautline_ValidateInput_h
@@ -29,16 +30,16 @@ class vtkSelection;
 
 namespace tautline
 {
-/// What an input has to fulfil besides being consistent.
+/// Requirements on an input beyond consistency.
 struct InputRules
 {
-  bool finitePoints = false; ///< NaN and infinite coordinates are refused
+  bool finitePoints = false; ///< reject NaN and infinite coordinates
   int threads = 0;           ///< 0: one per core
 };
 
 /**
  * @brief The first defect of a data set, or of the data sets of composite data ("In block 3: ..."),
- * with the remedy; "" if there is none. Null is no defect, nor are leaves that are not data sets.
+ * with the remedy; "" if there is none. Null and leaves that are not data sets are not defects.
  */
 TAUTLINECORE_EXPORT std::string inputProblem(vtkDataObject* data, const InputRules& rules = {});
 
@@ -46,8 +47,9 @@ TAUTLINECORE_EXPORT std::string inputProblem(vtkDataObject* data, const InputRul
 TAUTLINECORE_EXPORT void validateInput(vtkDataObject* data, const InputRules& rules = {});
 
 /**
- * @brief A sentence, with the remedy, on data without points or cells; "" for others, for what is
- * no data set, and on all processes of a parallel server but the first, which may have no part.
+ * @brief A sentence, with the remedy, on data without points or cells; "" for other data, for
+ * objects that are not data sets, and on processes of a parallel server other than the first, which
+ * may have no part.
  * @param needed "cells" or "points"
  */
 TAUTLINECORE_EXPORT std::string emptyInput(vtkDataObject* data, const char* needed = "cells");
@@ -57,13 +59,13 @@ TAUTLINECORE_EXPORT void warnOfEmptyInput(
   vtkAlgorithm* filter, vtkDataObject* data, const char* needed);
 
 /// For filters that VTK executes once per block of composite data: a sentence on a block that is
-/// not what they need ("mesh") and is left out.
+/// left out because it is not of the kind they need ("mesh").
 TAUTLINECORE_EXPORT std::string leftOut(vtkDataObject* block, const char* needed);
 
-/// Which leaves of composite data are not meshes and are left out, as a sentence, or "".
+/// A sentence on the leaves of composite data that are left out because they are not meshes, or "".
 TAUTLINECORE_EXPORT std::string skippedLeaves(vtkDataObject* data);
 
-/// What is wrong with a selection: ids that are not in the mesh, or a list that is not of ids.
+/// The defect of a selection: ids that are not in the mesh, or a list that does not hold ids.
 TAUTLINECORE_EXPORT std::string selectionProblem(vtkSelection* selection, vtkDataObject* mesh);
 }
 #endif

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file VtkCompatibility.h
- * @brief What differs between VTK 9.1 and 9.6, in one place. Not a public header.
+ * @brief Handles the differences between VTK 9.1 and 9.6. Not a public header.
  */
 #ifndef tautline_VtkCompatibility_h
 #define tautline_VtkCompatibility_h
@@ -30,7 +30,7 @@
 
 namespace tautline
 {
-/// The name of VTK's class of a type of cells; "UnknownClass" for numbers without one.
+/// The name of the VTK class for a cell type; "UnknownClass" for unknown numbers.
 inline const char* cellClassName(int type)
 {
 #if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 6, 0)
@@ -53,7 +53,7 @@ inline void cellPoints(
 #endif
 }
 
-/// The types of the cells as they are stored. VTK 9.6 may compute them.
+/// The stored types of the cells. VTK 9.6 may compute them.
 inline vtkDataArray* storedCellTypes(vtkUnstructuredGrid* grid)
 {
 #if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 6, 0)
@@ -63,8 +63,8 @@ inline vtkDataArray* storedCellTypes(vtkUnstructuredGrid* grid)
 #endif
 }
 
-/// The types of the cells, one byte each; a copy where VTK 9.6 computes them, as for cells of one
-/// type. Null if there are none.
+/// The types of the cells, one byte each; a copy if VTK 9.6 computes them, for example for cells of
+/// one type. Null if there are none.
 inline vtkSmartPointer<vtkUnsignedCharArray> cellTypesOf(vtkUnstructuredGrid* grid)
 {
   vtkDataArray* stored = storedCellTypes(grid);
@@ -77,9 +77,9 @@ inline vtkSmartPointer<vtkUnsignedCharArray> cellTypesOf(vtkUnstructuredGrid* gr
   return types;
 }
 
-/// Removes lists of the faces of polyhedra from a mesh that has no polyhedra. The readers of .pvtu
-/// files of VTK before 9.4 leave such lists at random: they look for polyhedra before the types of
-/// the cells are known. The lists are shorter than the cells, and VTK's extraction of cells reads
+/// Removes lists of the faces of polyhedra from a mesh that has no polyhedra. The .pvtu readers of
+/// VTK before 9.4 leave such lists at random, because they look for polyhedra before the cell types
+/// are known. The lists are shorter than the number of cells, and VTK's extraction of cells reads
 /// beyond their ends.
 inline void removeStrayFaces(vtkUnstructuredGrid* grid)
 {
@@ -100,9 +100,9 @@ inline void removeStrayFaces(vtkUnstructuredGrid* grid)
 #endif
 }
 
-/// Gives a mesh cells with polyhedra. `starts` has the place in `streams` of each polyhedron, -1
-/// for other cells; there are the number of its faces, and the number of points and the points of
-/// each, as VTK kept them before 9.4.
+/// Sets the cells of a mesh with polyhedra. `starts` has the position of each polyhedron in
+/// `streams`, -1 for other cells. A stream has the number of faces, and for each face the number of
+/// points and the points, as in VTK before 9.4.
 inline void setPolyhedralCells(vtkUnstructuredGrid* grid, vtkUnsignedCharArray* types,
   vtkCellArray* cells, vtkIdTypeArray* starts, vtkIdTypeArray* streams)
 {
@@ -127,7 +127,7 @@ inline void setPolyhedralCells(vtkUnstructuredGrid* grid, vtkUnsignedCharArray* 
 #endif
 }
 
-/// The offsets of cells that are stored in 64 bits; null where they are not a plain array.
+/// The offsets of cells stored in 64 bits; null if they are not a plain array.
 inline vtkAOSDataArrayTemplate<vtkTypeInt64>* offsets64(vtkCellArray* cells)
 {
 #if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 6, 0)
@@ -137,7 +137,7 @@ inline vtkAOSDataArrayTemplate<vtkTypeInt64>* offsets64(vtkCellArray* cells)
 #endif
 }
 
-/// The points of cells that are stored in 64 bits; null where they are not a plain array.
+/// The points of cells stored in 64 bits; null if they are not a plain array.
 inline vtkAOSDataArrayTemplate<vtkTypeInt64>* connectivity64(vtkCellArray* cells)
 {
 #if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 6, 0)
@@ -147,21 +147,21 @@ inline vtkAOSDataArrayTemplate<vtkTypeInt64>* connectivity64(vtkCellArray* cells
 #endif
 }
 
-/// Where offsets64() begins; null where VTK 9.6 computes the offsets.
+/// The start of offsets64(); null if VTK 9.6 computes the offsets.
 inline const vtkTypeInt64* plainOffsets(vtkCellArray* cells)
 {
   auto* array = offsets64(cells);
   return array ? array->GetPointer(0) : nullptr;
 }
 
-/// Where connectivity64() begins; null where the points are not a plain array.
+/// The start of connectivity64(); null if the points are not a plain array.
 inline const vtkTypeInt64* plainConnectivity(vtkCellArray* cells)
 {
   auto* array = connectivity64(cells);
   return array ? array->GetPointer(0) : nullptr;
 }
 
-/// Gives an AMR data set in space its levels, with so many blocks each.
+/// Sets the levels of a three-dimensional AMR data set, with the given number of blocks each.
 inline void initializeLevels(vtkUniformGridAMR* amr, const std::vector<unsigned int>& blocks)
 {
 #if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 6, 0)

@@ -47,7 +47,7 @@ bool isGhost(vtkDataSet* piece, vtkIdType cell)
 //------------------------------------------------------------------------------
 // Arrays
 
-/// The array of a name, if it can be joined with another one.
+/// The array with the same name, if it can be joined with the given one.
 vtkAbstractArray* counterpart(vtkDataSetAttributes* data, vtkAbstractArray* array)
 {
   vtkAbstractArray* other = data->GetAbstractArray(array->GetName());
@@ -57,7 +57,7 @@ vtkAbstractArray* counterpart(vtkDataSetAttributes* data, vtkAbstractArray* arra
   return alike ? other : nullptr;
 }
 
-/// Drops an array of ghosts that has none, after those that are copies have become originals.
+/// Clears the flags of copies, which have become originals, and drops a ghost array without ghosts.
 void clearGhosts(vtkDataSetAttributes* data, unsigned char copies)
 {
   const char* name = vtkDataSetAttributes::GhostArrayName();
@@ -161,8 +161,7 @@ vtkSmartPointer<vtkPoints> joinPoints(const Pieces& sources, const Origins& orig
   return points;
 }
 
-/// The points of a cell by other numbers, as InsertNextCell() takes them: of a polyhedron, the
-/// faces.
+/// The renumbered points of a cell in the format of InsertNextCell(); for a polyhedron, the faces.
 void renumberedCell(
   vtkDataSet* source, vtkIdType cell, const std::vector<vtkIdType>& numbers, vtkIdList* ids)
 {
@@ -219,7 +218,7 @@ vtkSmartPointer<vtkDataSet> buildMesh(const Pieces& sources, const Origins& poin
 //------------------------------------------------------------------------------
 // Numbers of points
 
-/// One flag per point of a piece: it belongs to a cell that is no ghost, or to none.
+/// One flag per point of a piece, set if it belongs to a cell that is not a ghost, or to no cell.
 std::vector<char> ownPoints(vtkDataSet* piece)
 {
   std::vector<char> own(static_cast<std::size_t>(piece->GetNumberOfPoints()), 1);
@@ -246,7 +245,7 @@ std::vector<char> ownPoints(vtkDataSet* piece)
   return own;
 }
 
-/// A point to be numbered, by its key: a place or a global id.
+/// A point to be numbered by its key: a position or a global id.
 struct Keyed
 {
   Vec3 key, place;
@@ -263,7 +262,7 @@ struct Keyed
   bool operator<(const Keyed& other) const
   {
     const bool less = this->before(other), greater = other.before(*this);
-    // The owner first: its values are taken.
+    // The owner comes first, because its values are used.
     return less || greater         ? less
       : this->own != other.own     ? this->own > other.own
       : this->piece != other.piece ? this->piece < other.piece
@@ -283,13 +282,14 @@ bool haveIds(const Pieces& pieces, bool ofPoints)
     });
 }
 
-/// Numbers the points that are one point alike; fills where they are taken from.
-/// @return per point of the whole, a number that those at one place, or with one id, have alike
+/// Gives copies of a point the same number, and records their origins.
+/// @return per point of the whole mesh, a number shared by all points at one position or with one
+/// id
 std::vector<vtkIdType> numberPoints(const Pieces& pieces, WholeMesh& whole, Origins& origins)
 {
   std::vector<vtkIdType> places;
   const bool byId = haveIds(pieces, true);
-  std::vector<Keyed> all, odd; // odd ones have no place
+  std::vector<Keyed> all, odd; // odd ones have no position
   for (std::size_t i = 0; i < pieces.size(); ++i)
   {
     vtkDataSet* piece = pieces[i];
@@ -321,7 +321,7 @@ std::vector<vtkIdType> numberPoints(const Pieces& pieces, WholeMesh& whole, Orig
       if (byId && all[end].place != all[begin].place)
       {
         copies.require({ all[begin].piece, all[begin].id }, { all[end].piece, all[end].id });
-        // A point with a copy that is not finite is not finite: the others do not hide it.
+        // A point with a nonfinite copy is not finite, even if other copies are.
         const Vec3& first = all[origin].place;
         const Vec3& other = all[end].place;
         const bool finite = std::isfinite(first[0] + first[1] + first[2]);
@@ -354,7 +354,7 @@ std::vector<vtkIdType> numberPoints(const Pieces& pieces, WholeMesh& whole, Orig
 //------------------------------------------------------------------------------
 // Numbers of cells
 
-/// What vtkPolyData keeps in this order; others in one list.
+/// The lists that vtkPolyData keeps, in this order; other data sets have one list.
 int listOf(int type, bool poly)
 {
   switch (type)
@@ -372,11 +372,11 @@ int listOf(int type, bool poly)
   }
 }
 
-/// The points of all cells in the whole mesh, sorted within each cell; or their places.
+/// The points of all cells in the whole mesh, sorted within each cell; or their positions.
 class CellKeys
 {
 public:
-  /// @param places per point of the whole; null: the numbers of points count
+  /// @param places per point of the whole mesh; if null, point numbers are used
   CellKeys(const Pieces& pieces, const WholeMesh& whole, const std::vector<vtkIdType>* places)
   {
     vtkNew<vtkIdList> ids;
@@ -420,8 +420,8 @@ private:
   std::vector<std::size_t> Begin, First;
 };
 
-/// Gives ghosts the numbers of the cells with their points, where there are some.
-/// @return the others
+/// Gives each ghost the number of the cell with its points, if there is one.
+/// @return the other cells
 Origins numberGhosts(
   const Origins& ghosts, const Origins& origins, const CellKeys& keys, WholeMesh& whole)
 {
@@ -445,7 +445,7 @@ Origins numberGhosts(
   return left;
 }
 
-/// @param places of the points, as numberPoints() gives them
+/// @param places of the points, as returned by numberPoints()
 void numberCells(
   const Pieces& pieces, const std::vector<vtkIdType>& places, WholeMesh& whole, Origins& origins)
 {
@@ -502,8 +502,8 @@ void numberCells(
   {
     ghosts = numberGhosts(ghosts, origins, keys, whole);
   }
-  // Where one process has several parts, points on the seam between them are not one, and the ghost
-  // of a cell has those of the other part.
+  // If one process has several parts, points on the seam between them are not merged, and the ghost
+  // of a cell uses the points of the other part.
   if (!ghosts.empty())
   {
     numberGhosts(ghosts, origins, CellKeys(pieces, whole, &places), whole);
@@ -555,7 +555,7 @@ WholeMesh assembleImage(const Pieces& pieces)
   if (std::any_of(points.begin(), points.end(), missing) ||
     std::any_of(cells.begin(), cells.end(), missing))
   {
-    throw Error("The pieces of the image do not fill it: gather it on one process first.");
+    throw Error("The pieces of the image leave gaps: gather it on one process first.");
   }
   joinData(pieces, points, cells, image);
   whole.points = std::move(points);
@@ -564,7 +564,7 @@ WholeMesh assembleImage(const Pieces& pieces)
 }
 
 //------------------------------------------------------------------------------
-/// A piece that is the mesh.
+/// A single piece is the mesh.
 WholeMesh takeSingle(const Pieces& pieces, std::size_t single)
 {
   WholeMesh whole;
@@ -648,7 +648,7 @@ WholeMesh assemble(const std::vector<vtkDataSet*>& pieces, const WholeMesh* like
   {
     return whole;
   }
-  // Back to the numbers of the pieces given.
+  // Converts back to the numbers of the given pieces.
   std::vector<PieceNumbers> all(pieces.size());
   for (std::size_t k = 0; k < filled.size(); ++k)
   {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file WholeMesh.h
- * @brief One mesh of its pieces, and pieces of a mesh.
+ * @brief Assembles a mesh from its pieces, and extracts pieces from a mesh.
  */
 #ifndef tautline_WholeMesh_h
 #define tautline_WholeMesh_h
@@ -17,11 +17,11 @@ class vtkDataSet;
 
 namespace tautline
 {
-/// Where the points and cells of a piece are in the whole mesh.
+/// The indices of the points and cells of a piece in the whole mesh.
 struct PieceNumbers
 {
   std::vector<vtkIdType> points;
-  std::vector<vtkIdType> cells; ///< of a ghost cell: the cell it is a copy of, -1 if there is none
+  std::vector<vtkIdType> cells; ///< for a ghost cell, its original, or -1 if there is none
 };
 
 /// A point or cell of a piece.
@@ -31,7 +31,7 @@ struct PieceItem
   vtkIdType id;
 };
 
-/// A mesh, the places of its pieces, and where its points and cells are taken from.
+/// A mesh, the numbering of its pieces, and the origins of its points and cells.
 struct WholeMesh
 {
   vtkSmartPointer<vtkDataSet> mesh;
@@ -40,34 +40,35 @@ struct WholeMesh
 };
 
 /**
- * @brief Puts pieces together. The result does not depend on how the mesh was divided.
+ * @brief Assembles pieces. The result does not depend on the division of the mesh.
  *
- * Points are identified by the global ids, if all pieces have some, and are in their order; places
- * of copies may differ by rounding, see areCopies(). Else
- * points with equal coordinates on several pieces are one, unless a piece has several points there
- * (a crack, a contact, a seam within the piece), which all stay apart; they are in the order of
- * their coordinates. Cells are in the order of their global ids, or else of the numbers of their
- * points. Ghost cells are left out, as copies of others. Arrays are those that all pieces with
- * points have. A single piece is taken as it is. Pieces of one image are an image, those of
- * vtkPolyData are vtkPolyData, others an unstructured grid.
+ * If all pieces have global ids, these identify the points and define their order; positions of
+ * copies may differ by rounding, see areCopies(). Otherwise points with equal coordinates on
+ * several pieces are merged, unless a piece has several points there (a crack, a contact, a seam
+ * within the piece), which all stay apart; they are in the order of their coordinates. Cells are in
+ * the order of their global ids, or otherwise of their point numbers. Ghost cells are left out as
+ * copies of other cells. Only arrays of all pieces with points are kept. A single piece is used as
+ * it is. Pieces of one image give an image, pieces of vtkPolyData give vtkPolyData, and other
+ * pieces an unstructured grid.
  *
- * @param pieces without points or not; not null
- * @param like a mesh with as many pieces, points and cells, whose numbers are taken; or null
+ * @param pieces may have no points; must not be null
+ * @param like a mesh with the same numbers of pieces, points and cells, whose numbering is used; or
+ * null
  *
- * Throws Error for global ids that points at different places or several cells have, and
- * images with gaps.
+ * Throws Error if points at different positions or several cells share a global id, and for images
+ * with gaps.
  */
 TAUTLINECORE_EXPORT WholeMesh assemble(
   const std::vector<vtkDataSet*>& pieces, const WholeMesh* like = nullptr);
 
-/// Whether the pieces have as many points and cells as those of a mesh and, where both have some,
-/// the same global ids of points.
+/// Whether the pieces match the pieces of a mesh in the numbers of points and cells and, if both
+/// have them, in the global ids of points.
 TAUTLINECORE_EXPORT bool matches(const std::vector<vtkDataSet*>& pieces, const WholeMesh& mesh);
 
 /**
- * @brief The part of a mesh with the cells that are flagged, and their points.
+ * @brief The part of a mesh with the flagged cells and their points.
  * @param flags one per cell
- * @param loose whether it has the points without cells, too
+ * @param loose whether to include points without cells
  */
 TAUTLINECORE_EXPORT vtkSmartPointer<vtkDataSet> extractCells(
   vtkDataSet* mesh, const std::vector<char>& flags, bool loose);

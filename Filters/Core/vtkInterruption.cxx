@@ -18,7 +18,7 @@ static_assert(
 
 namespace
 {
-/// Null where a part has no effect.
+/// Null if a section has no effect.
 thread_local std::vector<std::unique_ptr<tautline::InterruptScope>> parts;
 }
 

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkInterruption
- * @brief Lets Ctrl-C and callbacks end the computations of filters, for languages other than C++.
+ * @brief Allows Ctrl-C and callbacks to interrupt the computations of filters, for languages other
+ * than C++.
  *
- * Between Begin() and End(), SIGINT and Cancel() end what the filters of Tautline compute on this
- * thread: their outputs are empty, and AbortExecute is set. Without it SIGINT has its usual effect.
- * Python's package uses it around each update; see tautline/Core/Interruption.h for C++.
+ * Between Begin() and End(), SIGINT and Cancel() interrupt Tautline filters on this thread: their
+ * outputs are empty, and AbortExecute is set. Elsewhere SIGINT has its usual effect. The Python
+ * package uses this class around each update; see tautline/Core/Interruption.h for C++.
  */
 
 #ifndef vtkInterruption_h
@@ -29,16 +30,16 @@ public:
   };
 
   /**
-   * Begins a part of the program in which computations of this thread can be interrupted. Parts
-   * nest. No effect with several processes, which can only end together.
+   * Begins a section of the program in which computations of this thread can be interrupted.
+   * Sections can be nested. Has no effect with several processes, which can only end together.
    * @param handleSignal whether SIGINT interrupts; its handler is replaced until End()
    */
   static void Begin(bool handleSignal);
 
-  /// Ends the part. @return whether SIGINT has arrived in it
+  /// Ends the section. @return whether SIGINT has arrived in it
   static bool End();
 
-  /// Interrupts the computations of this thread, until the outermost part ends.
+  /// Interrupts the computations of this thread until the outermost section ends.
   static void Cancel();
 
   /// Whether the computations of this thread are interrupted.
@@ -46,9 +47,9 @@ public:
 
   ///@{
   /**
-   * For tests, which find computations without a poll by it: measures the longest time that a
-   * thread computes between two polls, in seconds of its CPU time. MeasurePolls() forgets what was
-   * measured before.
+   * For tests, which use this to find computations without polls: measures the longest time that a
+   * thread computes between two polls, in seconds of CPU time. MeasurePolls() resets the
+   * measurement.
    */
   static void MeasurePolls(bool measure);
   static double GetLongestUnpolledSeconds();

@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkMeshBoundaryAlgorithm
- * @brief Base class of the filters whose boundary points may slide: the properties of the group
+ * @brief Base class of filters whose boundary points may slide; has the properties of the group
  * Boundary.
  *
- * Abstract. The boundary is the surface of a volume mesh, or the border of a planar mesh; of a
- * surface in space, all of it is the surface that points slide on.
+ * Abstract. The boundary is the surface of a volume mesh, or the border of a planar mesh. For a
+ * surface in space, the points slide on the whole surface.
  *
  * A boundary that slides ON_SURFACE is described by its features: corners stay, points on curves
  * (sharp edges, borders, junctions) slide along these, and others within their patch. With a
- * geometry, the features are those that the mesh and the geometry have in common: edges of the mesh
- * next to a curve of the geometry are on it, and sharp edges and corners that the geometry does not
- * have are smooth (see tautline/Boundary/GeometryMatch.h).
+ * geometry, only features common to the mesh and the geometry count: edges of the mesh next to a
+ * curve of the geometry are on it, and sharp edges and corners that the geometry does not have
+ * count as smooth (see tautline/Boundary/GeometryMatch.h).
  *
- * Three input arrays can be chosen by SetInputArrayToProcess(), whose indices are in the
- * documentation of the filters: a point array of points that stay (where it is not 0), a point
- * array of feature kinds (0 patch, 1 curve, 2 corner, -1 as found), and a cell array of regions,
- * whose interfaces are part of the features.
+ * Three input arrays can be chosen with SetInputArrayToProcess() (see the documentation of the
+ * filters for the indices): a point array of fixed points (where it is not 0), a point array of
+ * feature kinds (0 patch, 1 curve, 2 corner, -1 as detected), and a cell array of regions, whose
+ * interfaces are features.
  *
  * @sa vtkMeshOptimizer, vtkMeshUntangler
  */
@@ -47,11 +47,11 @@ public:
   };
   ///@{
   /**
-   * What the points of the boundary do. FIXED: they stay. SLIDING: of a volume mesh those within a
-   * flat part of the surface move in it, those on a straight edge along it, corners and curved
-   * parts stay; of a mesh of 2D cells those on straight parts move along them (see FlatAngle).
-   * ON_SURFACE: they slide on the boundary as it was, or on the geometry, along its curves
-   * (see FeatureAngle), while corners stay. FREE: they move as all others.
+   * The motion of the boundary points. FIXED: they stay. SLIDING: in a volume mesh, points within a
+   * flat part of the surface move in it, points on a straight edge move along it, and corners and
+   * curved parts stay; in a mesh of 2D cells, points on straight parts move along them (see
+   * FlatAngle). ON_SURFACE: they slide on the original boundary, or on the geometry, along its
+   * curves (see FeatureAngle), while corners stay. FREE: they move like all other points.
    */
   vtkTautlineSetRangeMacro(Boundary, int, FIXED, ON_SURFACE);
   vtkGetMacro(Boundary, int);
@@ -59,9 +59,9 @@ public:
 
   ///@{
   /**
-   * Boundary facets whose normals differ by at most so many degrees are one plane (edges: one line)
-   * to slide in. A part that bends by more in all, as a fine circle, is curved: where it bends,
-   * its points stay. The default is 1.
+   * Boundary facets whose normals differ by at most this many degrees form one plane (edges: one
+   * line) to slide in. A part that bends by more in total, such as a finely divided circle, is
+   * curved, and its points stay. The default is 1.
    */
   vtkTautlineSetRangeMacro(FlatAngle, double, 0.0, 90.0);
   vtkGetMacro(FlatAngle, double);
@@ -69,8 +69,8 @@ public:
 
   ///@{
   /**
-   * Edges at which a surface, or the boundary, bends by more than so many degrees are sharp. The
-   * default is 40.
+   * Edges at which a surface, or the boundary, bends by more than this angle, in degrees, are
+   * sharp. The default is 40.
    */
   vtkTautlineSetRangeMacro(FeatureAngle, double, 0.0, 180.0);
   vtkGetMacro(FeatureAngle, double);
@@ -80,9 +80,9 @@ public:
   /**
    * Keep the features of a surface in space, of the boundary (ON_SURFACE) and of interfaces of
    * regions: corners stay, points on curves slide along these and other points within their
-   * patches. On a surface, points of the border then slide along it unless FIXED. Off: points of a
-   * surface may go anywhere on it, and those on sharp edges of the boundary stay unless these are
-   * straight. The default is on.
+   * patches. On a surface, points of the border then slide along it unless FIXED. If off, points of
+   * a surface may move anywhere on it, and points on sharp edges of the boundary stay unless the
+   * edges are straight. The default is on.
    */
   vtkSetMacro(KeepFeatures, bool);
   vtkGetMacro(KeepFeatures, bool);
@@ -92,7 +92,7 @@ public:
   ///@{
   /**
    * With KeepFeatures, points slide on smooth patches and curves through the points of the input,
-   * made of cubic triangles and arcs; off: on its facets and edges. The default is on.
+   * made of cubic triangles and arcs; if off, on its facets and edges. The default is on.
    */
   vtkSetMacro(SmoothSurface, bool);
   vtkGetMacro(SmoothSurface, bool);
@@ -101,16 +101,15 @@ public:
 
   ///@{
   /**
-   * Of surfaces in space, and of the boundary ON_SURFACE: how far the new surface may be from the
-   * old one, and the old one from the new one, as a fraction of the diagonal of the bounding box, 0
-   * to 1; 0: any distance.
-   * The same of interfaces of regions (with KeepFeatures), whatever the boundary does. Steps that
-   * would take it farther are shortened or left out; the summary says how many points are held by
-   * that. The distance is measured at the quarters of the edges of the boundary's triangles
-   * (quadrilaterals are two), at the crossings of the lines between these, and at the centres.
-   * With a geometry it is measured from the boundary to the geometry; what is farther at the start
-   * may stay so. The points of a surface in space are on the geometry, whatever the tolerance. The
-   * default is 0.001.
+   * The largest distance between the new and the old surface, in both directions, as a fraction of
+   * the diagonal of the bounding box, 0 to 1; 0 allows any distance. Applies to surfaces in space
+   * and to the boundary with ON_SURFACE. It also applies to interfaces of regions (with
+   * KeepFeatures), for any setting of Boundary. Steps that would exceed it are shortened or left
+   * out; the summary reports the number of points held back. The distance is measured at the
+   * quarter points of the edges of the boundary's triangles (a quadrilateral counts as two), at the
+   * crossings of the lines between these, and at the centers. With a geometry it is measured from
+   * the boundary to the geometry; parts that are farther away initially may stay so. The points of
+   * a surface in space are on the geometry, whatever the tolerance. The default is 0.001.
    */
   vtkTautlineSetRangeMacro(SurfaceTolerance, double, 0.0, 1.0);
   vtkGetMacro(SurfaceTolerance, double);
@@ -119,7 +118,7 @@ public:
   ///@{
   /**
    * Add the features to the output: the point array `FeatureKind` (0 within a patch or the mesh, 1
-   * on a curve, 2 corner) and `PatchId`, of the points within a patch and of the cells of a
+   * on a curve, 2 corner), and the array `PatchId` for points within a patch and for cells of a
    * surface (-1: none). The default is off.
    */
   vtkSetMacro(ShowFeatures, bool);
@@ -129,9 +128,9 @@ public:
 
   ///@{
   /**
-   * Free the points of the elements that are inverted or degenerate in the input, however they are
-   * fixed, also on the boundary, which may change its shape there. A mesh on several processes is
-   * gathered on the first one. Off.
+   * Free the points of elements that are inverted or degenerate in the input, whatever fixes them,
+   * including boundary points, where the boundary may then change its shape. A mesh on several
+   * processes is gathered on the first one. The default is off.
    */
   vtkSetMacro(FreeInvalid, bool);
   vtkGetMacro(FreeInvalid, bool);
@@ -143,7 +142,7 @@ protected:
   vtkMeshBoundaryAlgorithm(int fixedArray, int kindArray, int regionArray);
   ~vtkMeshBoundaryAlgorithm() override;
 
-  /// @param geometry what points slide on instead of the boundary of the input, or null
+  /// @param geometry the surface that points slide on instead of the boundary of the input, or null
   tautline::BoundaryProperties GetBoundaryProperties(vtkDataObject* geometry);
 
   int Boundary = FIXED;

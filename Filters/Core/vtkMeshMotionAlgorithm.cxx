@@ -39,8 +39,8 @@ void vtkMeshMotionAlgorithm::ForEachBlock(vtkInformationVector** inputVector,
     auto* piece = vtkDataSet::SafeDownCast(input);
     if (!piece)
     {
-      throw tautline::Error("The reproducible order is that of one mesh, and the input has blocks: "
-                            "run Merge Blocks first, or switch Reproducible Order off.");
+      throw tautline::Error("The reproducible order applies to a single mesh, but the input has "
+                            "blocks: run Merge Blocks first, or switch Reproducible Order off.");
     }
     const bool empty = piece->GetNumberOfPoints() == 0;
     const auto marked = tautline::markSelected(piece, empty ? nullptr : selection);
@@ -49,7 +49,7 @@ void vtkMeshMotionAlgorithm::ForEachBlock(vtkInformationVector** inputVector,
       vtkDataSet::SafeDownCast(output), 0, "", 0, {} });
     return;
   }
-  this->Group.reset(); // of an execution before, on pieces
+  this->Group.reset(); // left by an earlier execution on pieces
   tautline::requireOneProcess(input);
   this->BlockNotice =
     this->MergeCoincidentPoints ? tautline::describeBlockSeams(input, this->Threads) : "";
@@ -98,7 +98,7 @@ void vtkMeshMotionAlgorithm::VisitBlock(
   layer->expand(planar, made, vtkPointSet::SafeDownCast(block.output));
   this->BlockNotice += std::string(this->BlockNotice.empty() ? "" : " ") +
     (block.name.empty() ? "The mesh" : block.name) +
-    " is one layer of cells and was treated as planar, at right angles to " + "xyz"[layer->axis()] +
+    " is one layer of cells and was treated as planar, perpendicular to " + "xyz"[layer->axis()] +
     ".";
 }
 
@@ -145,7 +145,7 @@ bool vtkMeshMotionAlgorithm::TakePiece(vtkDataObject* input, const std::string& 
     mesh = tautline::MovableMesh::makePiece(group, data, this->Threads, this->MergeCoincidentPoints,
       static_cast<tautline::Redistribution>(this->Redistribute));
   }
-  catch (const tautline::Error& error) // the same on all processes; one process may refuse it, too
+  catch (const tautline::Error& error) // the same on all processes; one process may also reject it
   {
     return gather(
       scattered ? std::string("its pieces could not be joined. ") + error.what() : std::string());
@@ -159,7 +159,7 @@ bool vtkMeshMotionAlgorithm::TakePiece(vtkDataObject* input, const std::string& 
   const std::string reason = !mesh                    ? tautline::oppositeOrders
     : group.any(isFramed(mesh->distributed().view())) ? "its coordinates are of extreme size"
     : !mesh->inSpaceOrPlane()
-    ? "it is a surface in space, or in a plane that is not at right angles to an axis"
+    ? "it is a surface in space, or in a plane that is not perpendicular to an axis"
     : "";
   if (!reason.empty())
   {

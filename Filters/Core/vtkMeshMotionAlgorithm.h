@@ -1,26 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkMeshMotionAlgorithm
- * @brief Base class of the filters that move the points of a mesh: fixed points, blocks, history.
+ * @brief Base class of filters that move the points of a mesh; handles fixed points, blocks and the
+ * history.
  *
  * Abstract. Such a filter keeps the connectivity. Its input on port 0 is a data set with explicit
  * points, or blocks of these, which are treated one after the other, each with its own boundary
  * (the partitions of a partitioned or multipiece data set are one mesh, see GetGatheredRules()): a
- * seam between two blocks stays in place with the boundary, and is a warning; if the boundary can
- * slide or move freely, it is an error, as the blocks would come apart (Merge Blocks is the
- * remedy). A mesh that is reversed throughout is treated as its mirror image. Cells that list
- * their points in the opposite order of the others are treated as if they did not, and keep their
- * order in the output; a message says how many. Parts without a consistent orientation (a Moebius
- * band), image data (implicit points) and cells of higher order are refused.
+ * seam between two blocks stays in place with the boundary, and causes a warning; if the boundary
+ * can slide or move freely, a seam is an error, because the blocks would come apart (run Merge
+ * Blocks first). A mesh that is reversed throughout is treated as its mirror image. Cells that list
+ * their points in the opposite order of the others are treated as if reversed, and keep their order
+ * in the output; a message reports their number. Parts without a consistent orientation (a Moebius
+ * band), image data (implicit points) and cells of higher order are not supported.
  *
  * @par Fixed points:
- * A point does not move where a point array (SetInputArrayToProcess(); the index is in the
- * documentation of the filter) is not 0, and where a vtkSelection contains it or a cell of it. The
- * points of ghost cells never move, so that the parts of a distributed mesh still fit together.
+ * A point does not move if its value in a point array is not 0 (SetInputArrayToProcess(); see the
+ * documentation of the filter for the index), or if a vtkSelection contains it or one of its cells.
+ * The points of ghost cells never move, so that the parts of a distributed mesh still fit together.
  *
  * @par Coincident points:
- * A mesh in pieces has several points at the same place on its seams. They are one point by default
- * (MergeCoincidentPoints) and move together; the output has the points of the input.
+ * A mesh in pieces has coincident points on its seams. By default they are treated as one point
+ * (MergeCoincidentPoints) and move together; the output has all points of the input.
  *
  * @par Outputs:
  * Port 0 has the new points, in the precision of the input unless a valid element would become
@@ -56,9 +57,9 @@ public:
 
   ///@{
   /**
-   * Whether points with the same coordinates on facets that match are treated as one, as on the
-   * seams of a mesh in pieces; off: they move apart, as a crack or a contact needs it. The default
-   * is on. See tautline/Mesh/CoincidentPoints.h.
+   * Whether to treat points with the same coordinates on matching facets as one, for example on the
+   * seams of a mesh in pieces; if off, they can move apart, as required for cracks and contacts.
+   * The default is on. See tautline/Mesh/CoincidentPoints.h.
    */
   vtkSetMacro(MergeCoincidentPoints, bool);
   vtkGetMacro(MergeCoincidentPoints, bool);
@@ -67,9 +68,9 @@ public:
 
   ///@{
   /**
-   * Whether one layer of hexahedra and wedges between two planes, as 2D cases of OpenFOAM have it,
-   * is treated as the planar mesh that it is: the points of one side move in their plane, those of
-   * the other with them. The default is on. See LayerMesh in Filters/Core.
+   * Whether to treat one layer of hexahedra and wedges between two planes, as in 2D cases of
+   * OpenFOAM, as a planar mesh: the points of one side move in their plane, and the points of the
+   * other side move with them. The default is on. See LayerMesh in Filters/Core.
    */
   vtkSetMacro(PlanarLayers, bool);
   vtkGetMacro(PlanarLayers, bool);
@@ -79,17 +80,17 @@ public:
   enum Redistributions
   {
     NO_REDISTRIBUTION = 0, ///< each process works on the points that its piece has
-    KD_TREE = 1,           ///< boxes of about as many points: fast
-    PT_SCOTCH = 2 ///< parts of about as many elements with short borders: needs PETSc's PT-Scotch
+    KD_TREE = 1,           ///< boxes with about equal numbers of points; fast
+    PT_SCOTCH = 2          ///< balanced parts with short borders; needs PETSc with PT-Scotch
   };
 
   ///@{
   /**
-   * On a server with several processes: whether and how the mesh is divided anew among them, also
-   * where all of it is on the first process, as readers of serial files leave it. Then all of them
-   * have as much to do, and little to send. The result goes back to the pieces of the input, with
-   * the same points. What needs the whole mesh is gathered as without it. RedistributeOn() takes
-   * the k-d tree. The default is NO_REDISTRIBUTION.
+   * On a server with several processes: whether and how the mesh is redistributed among them, also
+   * if all of it is on the first process, as after reading a serial file. This balances the work
+   * and limits the communication. The result goes back to the pieces of the input, with the same
+   * points. Steps that need the whole mesh still gather it. RedistributeOn() selects the k-d tree.
+   * The default is NO_REDISTRIBUTION.
    */
   vtkTautlineSetRangeMacro(Redistribute, int, NO_REDISTRIBUTION, PT_SCOTCH);
   vtkGetMacro(Redistribute, int);
@@ -113,40 +114,40 @@ protected:
   };
 
   /**
-   * For TakesPieces(): whether each process works on its piece of the mesh in the execution to
-   * come. Not where all cells are on the first process (unless redistributed), and where the mesh
-   * has to be gathered, which GetWhyGathered() then says: blocks, surfaces in space, planes that
-   * are inclined, cells of extreme size, and pieces that cannot be joined; and processes that do
-   * not communicate by MPI. Collective.
-   * @param input the mesh, or what it is at the first time step
-   * @param why what else needs the whole mesh, "features need the whole mesh"; or ""
+   * For TakesPieces(): whether each process works on its piece of the mesh in the next execution.
+   * False if all cells are on the first process (unless redistributed) and if the mesh must be
+   * gathered, with the reason in GetWhyGathered(): blocks, surfaces in space, inclined planes,
+   * cells of extreme size, pieces that cannot be joined, or processes that do not communicate by
+   * MPI. Collective.
+   * @param input the mesh, or the mesh at the first time step
+   * @param why another reason to gather the mesh, for example "features need the whole mesh"; or ""
    */
   bool TakePiece(vtkDataObject* input, const std::string& why);
 
-  /// Forgets a piece that an execution before did not use.
+  /// Releases a piece that an earlier execution did not use.
   void DropPiece();
 
-  /// Whether this execution works on pieces, which may be the only one in the reproducible order.
+  /// Whether this execution works on pieces; in the reproducible order there may be a single piece.
   bool WorksOnPieces() const { return this->Piece || this->ReproducibleOrder; }
 
-  /// The mesh of a data set within ForEachBlock(), see tautline::MovableMesh; that of TakePiece(),
-  /// which is no longer kept.
+  /// The mesh of a data set within ForEachBlock(), see tautline::MovableMesh; or the mesh of
+  /// TakePiece(), which is then no longer kept.
   std::unique_ptr<tautline::MovableMesh> MakeMesh(const tautline::InputBlock& block, bool framed);
 
-  /// Whether this process reports for all that work on pieces; the only one does.
+  /// Whether this process reports for all processes that work on pieces; true for a single process.
   bool IsFirst() const;
 
-  /// Why the mesh was put together, as a sentence, or "".
+  /// A sentence on the reason for gathering the mesh, or "".
   const std::string& GetWhyGathered() const { return this->WhyGathered; }
 
   /**
    * Calls visit for each data set of the input, with its counterparts and its output, which has the
-   * arrays of the input. Data sets without points or cells are passed on without a call, but for
+   * arrays of the input. Data sets without points or cells are passed on without a call, except
    * pieces, which may be empty.
    * @param reference a data object of the same structure, or null
    * @param fixedPort the input port with the selection of fixed points
-   * @param boundaryMoves whether points of the boundary can move by themselves, so that a seam
-   * between two blocks would open: Error if there is one; else a warning
+   * @param boundaryMoves whether points of the boundary can move independently, so that a seam
+   * between two blocks would open: a seam is then an Error, otherwise a warning
    */
   void ForEachBlock(vtkInformationVector** inputVector, vtkInformationVector* outputVector,
     vtkDataObject* reference, int fixedPort, bool boundaryMoves,
@@ -158,19 +159,19 @@ protected:
   /// The number of data sets of the input, at least 1; known within ForEachBlock().
   int GetNumberOfBlocks() const { return this->NumberOfBlocks; }
 
-  /// Reports the progress on a block, 0 to 1. @return false if the execution is to be aborted
+  /// Reports the progress on a block, 0 to 1. @return false if the execution should be aborted
   bool ProceedInBlock(int block, double fraction);
 
-  /// Whether layers are treated so in the execution to come.
+  /// Whether layers are treated as planar meshes in the next execution.
   virtual bool TreatsLayers() { return this->PlanarLayers; }
 
   bool MergeCoincidentPoints = true;
   bool PlanarLayers = true;
   int Redistribute = NO_REDISTRIBUTION;
-  bool ReproducibleOrder = false; ///< a property of some filters
+  bool ReproducibleOrder = false; ///< a property in some filters
 
 private:
-  /// Calls visit for a block, of a layer for its planar mesh.
+  /// Calls visit for a block, or for the planar mesh of a layer.
   void VisitBlock(const tautline::InputBlock& block,
     const std::function<void(const tautline::InputBlock&)>& visit);
 
@@ -179,7 +180,7 @@ private:
 
   int NumberOfBlocks = 1;
   std::string BlockNotice;
-  // Of an execution on several processes:
+  // For an execution on several processes:
   std::unique_ptr<tautline::RankGroup> Group;   ///< outlives Piece
   std::unique_ptr<tautline::MovableMesh> Piece; ///< null: gathered, or one process
   std::string WhyGathered;

@@ -39,7 +39,7 @@ namespace
 {
 constexpr int MeshPort = 0;
 
-/// What VTK's reader leaves at random is not passed on; the data of the inputs are not changed.
+/// Removes data that VTK's reader leaves at random from copies; the inputs are not changed.
 void removeStrayFaces(vtkInformationVector** inputs, int ports, vtkInformationVector* outputs)
 {
   std::set<vtkDataSet*> given;
@@ -86,13 +86,13 @@ int vtkTautlineAlgorithm::FillInputPortInformation(int port, vtkInformation* inf
 {
   const bool selection =
     std::count(this->SelectionPorts.begin(), this->SelectionPorts.end(), port) > 0;
-  // The composite type first, so that the tables are those of all blocks.
+  // The composite type comes first, so that the tables cover all blocks.
   info->Set(
     vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), selection ? "vtkSelection" : "vtkCompositeDataSet");
   if (!selection)
   {
     info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
-    // Also what is not a mesh, so that the message can name the remedy.
+    // Accepts other data as well, so that the message can give the remedy.
     info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataObject");
   }
   info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), port != MeshPort);
@@ -114,7 +114,7 @@ int vtkTautlineAlgorithm::RequestDataObject(
     this->GetNumberOfInputPorts() > 0 ? vtkDataObject::GetData(inputVector[MeshPort]) : nullptr;
   for (int port = 0; port < this->GetNumberOfOutputPorts(); ++port)
   {
-    // What is announced by an abstract class has the class of the input.
+    // If an abstract class is announced, the output has the class of the input.
     const std::string announced =
       this->GetOutputPortInformation(port)->Get(vtkDataObject::DATA_TYPE_NAME());
     const bool likeInput = announced == "vtkDataObject" || announced == "vtkDataSet";
@@ -122,7 +122,7 @@ int vtkTautlineAlgorithm::RequestDataObject(
     {
       return 0;
     }
-    // A block that is not a data set is left out, but has an output.
+    // A block that is not a data set is left out but has an output.
     const bool other = announced == "vtkDataSet" && !vtkDataSet::SafeDownCast(input);
     const std::string name = other ? "vtkUnstructuredGrid"
       : likeInput                  ? input->GetClassName()
@@ -208,7 +208,7 @@ int vtkTautlineAlgorithm::ExecuteData(
   }
   if (!problem.empty())
   {
-    // A filter that executes itself once per time step ends with the first invalid one.
+    // A filter that executes itself once per time step ends at the first invalid one.
     request->Remove(vtkStreamingDemandDrivenPipeline::CONTINUE_EXECUTING());
     this->ClearResult();
     return this->Fail(outputs, problem);
@@ -242,7 +242,7 @@ int vtkTautlineAlgorithm::ExecuteGathered(tautline::GatheredRules rules, vtkInfo
   vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   rules.exchange = [this](tautline::ResultStream& stream) { this->ExchangeResult(stream); };
-  // On the first process, which is the only one that VTK has meanwhile.
+  // On the first process, which is temporarily the only one for VTK.
   const bool several = tautline::severalProcesses() != nullptr;
   const auto execute = [&]
   {
@@ -280,8 +280,8 @@ int vtkTautlineAlgorithm::ModifyRequest(vtkInformation* request, int when)
 //------------------------------------------------------------------------------
 namespace
 {
-/// Whether the next filter of Tautline upstream has failed, which says so by its error code only,
-/// see processInScope(). ParaView has filters of its own between those of the user.
+/// Whether the next Tautline filter upstream has failed, which is visible only in its error code,
+/// see processInScope(). ParaView inserts filters of its own between the user's filters.
 bool hasFailed(vtkExecutive* executive)
 {
   vtkAlgorithm* algorithm = executive->GetAlgorithm();
@@ -332,13 +332,13 @@ int vtkTautlineAlgorithm::UpdateInputs(vtkInformation* request)
     }
   }
   request->Set(vtkExecutive::FROM_OUTPUT_PORT(), port);
-  // What has failed once is taken for up to date, with empty outputs.
+  // A failed algorithm counts as up to date, with empty outputs.
   failed =
     failed || (this->FailedInputs > 0 && this->FailedInputs == time && this->FailedSteps == steps);
   this->FailedInputs = failed ? time : 0;
   this->FailedSteps = steps;
   const std::string problem = tautline::firstProblem(failed
-      ? "An input could not be computed, see the error of the filter or reader before this one."
+      ? "An input could not be computed; see the error of the filter or reader before this one."
       : "");
   if (!problem.empty() && this->ExecutesAgain())
   {

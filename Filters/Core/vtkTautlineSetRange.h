@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkTautlineSetRange.h
- * @brief A setter of a number with a range; a value outside is refused with a message.
+ * @brief A setter of a number with a range; a value outside the range is rejected with a message.
  *
  *     vtkTautlineSetRangeMacro(Threads, int, 0, 1024);
  *
- * In contrast to vtkSetClampMacro, which replaces a value outside the range by the nearest one
- * without a message, the property keeps its value, and an error names the property, the value, the
- * range and the value that is kept. NaN is outside of every range; infinity counts as the largest
- * number, so that it is inside where there is no limit (VTK_DOUBLE_MAX). GetThreadsMinValue() and
- * GetThreadsMaxValue() return the range.
+ * Unlike vtkSetClampMacro, which silently clamps a value outside the range, the property keeps its
+ * value, and an error reports the property, the value, the range and the value that is kept. NaN is
+ * outside every range; infinity counts as the largest number, which is inside if there is no limit
+ * (VTK_DOUBLE_MAX). GetThreadsMinValue() and GetThreadsMaxValue() return the range.
  */
 #ifndef vtkTautlineSetRange_h
 #define vtkTautlineSetRange_h

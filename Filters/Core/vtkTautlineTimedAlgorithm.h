@@ -4,8 +4,8 @@
  * @brief Base class of Tautline's filters whose work can be ended by a time limit.
  *
  * Abstract. After the time limit a filter that improves a result step by step (KeepsBest()) returns
- * the best one it has by then and reports this in its summary; the others end with an error. The
- * time is wall time. With several processes only those that limit their own work end.
+ * the best one so far and reports this in its summary; other filters end with an error. The time is
+ * wall time. With several processes, only filters that limit their own work end.
  *
  * @sa vtkTautlineAlgorithm
  */
@@ -25,8 +25,8 @@ public:
 
   ///@{
   /**
-   * Seconds for each execution, that is for each time step and for all blocks of composite data
-   * together, at least 0; 0 is no limit. The default is 600.
+   * The time limit in seconds of each execution, that is, for each time step and for all blocks of
+   * composite data together, at least 0; 0 means no limit. The default is 600.
    */
   vtkTautlineSetRangeMacro(TimeLimit, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(TimeLimit, double);

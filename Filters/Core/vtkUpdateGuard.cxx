@@ -21,7 +21,7 @@ vtkStandardNewMacro(vtkUpdateGuard);
 namespace
 {
 constexpr char Remedy[] =
-  "take a smaller mesh, fewer threads, or a higher limit on the memory of the process";
+  "use a smaller mesh, fewer threads, or a higher memory limit of the process";
 
 std::string messageOf(const std::function<void()>& work)
 {
@@ -40,13 +40,14 @@ std::string messageOf(const std::function<void()>& work)
   return "";
 }
 
-/// Ends readers and writers of VTK where they report progress.
+/// Ends VTK's readers and writers when they report progress.
 void abortIfInterrupted(vtkObject* caller, unsigned long, void*, void*)
 {
   if (tautline::InterruptScope::interrupted())
   {
     static_cast<vtkAlgorithm*>(caller)->SetAbortExecute(1);
-    // These do not ask before all arrays are written. Their destructor closes the file.
+    // These do not check for an abort before all arrays are written. Their destructor closes the
+    // file.
     if (caller->IsA("vtkXMLWriterBase"))
     {
       throw tautline::Interrupted();

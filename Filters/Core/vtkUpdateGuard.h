@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkUpdateGuard
- * @brief Updates algorithms for languages that C++ exceptions would end.
+ * @brief Updates algorithms for languages that cannot catch C++ exceptions.
  *
- * VTK's own readers and writers throw std::bad_alloc where memory does not suffice. VTK's Python
- * wrappers do not catch it: the process is aborted. The functions here return the message instead.
+ * VTK's own readers and writers throw std::bad_alloc if memory does not suffice. VTK's Python
+ * wrappers do not catch it, and the process is aborted. The functions here return the message
+ * instead.
  */
 
 #ifndef vtkUpdateGuard_h
@@ -26,7 +27,7 @@ public:
 
   ///@{
   /**
-   * As the methods of vtkAlgorithm with these names. @return the message of what was thrown, or "".
+   * Like the methods of vtkAlgorithm with these names. @return the message of the exception, or "".
    * After an interruption (vtkInterruption) the algorithm cannot be updated again.
    */
   static std::string Update(vtkAlgorithm* algorithm);
@@ -34,9 +35,8 @@ public:
   ///@}
 
   /**
-   * Lets the process end with a message and exit code 1 where std::bad_alloc, or the error of a
-   * thread that cannot be started, is not caught; it would be aborted. For programs, not for
-   * libraries.
+   * Makes the process exit with a message and code 1, instead of aborting, if std::bad_alloc or the
+   * error of a thread that cannot be started is not caught. For programs, not for libraries.
    */
   static void EndWithMessage();
 

@@ -57,7 +57,7 @@ vtkSmartPointer<vtkUnstructuredGrid> gridOf(vtkDataSet* data)
   return grid;
 }
 
-/// The data of the points that stay, and those of the nodes by interpolation.
+/// Copies the data of points that stay, and interpolates the data of the nodes.
 void writePointData(const CurvingResult& curved, vtkPointData* from, vtkPointData* to)
 {
   const auto kept = static_cast<vtkIdType>(curved.kept.size());
@@ -81,7 +81,7 @@ void writePointData(const CurvingResult& curved, vtkPointData* from, vtkPointDat
   to->RemoveArray(vtkDataSetAttributes::GhostArrayName());
 }
 
-/// Points where they were have exactly the coordinates that they had.
+/// Points that have not moved get exactly their original coordinates.
 std::vector<double> pointsOf(const CurvingResult& curved, const MeshAdapter& adapter)
 {
   std::vector<double> points = curved.points;
@@ -148,7 +148,7 @@ void writeCurved(const CurvingResult& curved, const MeshAdapter& adapter, vtkDat
   std::copy(curved.types.begin(), curved.types.end(), types->GetPointer(0));
   output->SetCells(types, cells);
   writePointData(curved, input->GetPointData(), output->GetPointData());
-  // The orders of the input's cells are not those of the output's.
+  // The orders of the input's cells do not apply to the output.
   vtkCellData* cellData = output->GetCellData();
   cellData->ShallowCopy(input->GetCellData());
   if (vtkDataArray* degrees = cellData->GetHigherOrderDegrees())

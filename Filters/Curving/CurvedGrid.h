@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CurvedGrid.h
- * @brief Data sets as unstructured grids, and the result of curving with the data of its input.
+ * @brief Converts data sets to unstructured grids, and writes the result of curving with the data
+ * of its input.
  */
 #ifndef tautline_CurvedGrid_h
 #define tautline_CurvedGrid_h
@@ -19,8 +20,8 @@ namespace tautline
 class MeshAdapter;
 struct CurvingResult;
 
-/// The same with an unstructured grid for each data set that is none; throws Error for adaptive
-/// grids (AMR), which cannot hold them.
+/// Converts all data sets to unstructured grids; throws Error for adaptive grids (AMR), which
+/// cannot hold them.
 vtkSmartPointer<vtkDataObject> asGrids(vtkDataObject* data);
 
 /**

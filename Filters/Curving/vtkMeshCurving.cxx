@@ -156,7 +156,7 @@ void vtkMeshCurving::Curve(const tautline::InputBlock& block, vtkDataObject* geo
 }
 
 //------------------------------------------------------------------------------
-/// Curves a block. What is to be repaired of the result is to be repaired here.
+/// Curves a block, and repairs the result if requested.
 tautline::CurvingResult vtkMeshCurving::Run(const tautline::InputBlock& block,
   const tautline::MeshAdapter& adapter, tautline::CurvingOptions& options, vtkIdType& invalidBefore)
 {
@@ -187,7 +187,7 @@ void vtkMeshCurving::RepairResult(
   const bool surface = adapter.mesh().dimension() == tautline::Dimension::Surface;
   if (surface || !adapter.reversedCells().empty())
   {
-    return; // reversed cells are listed as the input has them, and have no common orientation
+    return; // reversed cells are listed as in the input, and have no common orientation
   }
   tautline::MeshView view;
   view.numberOfPoints = static_cast<tautline::Index>(curved.points.size() / 3);

@@ -1,46 +1,47 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkMeshCurving
- * @brief Makes the cells of a mesh curved, of order 2 to 4, on a geometry or on the smooth surface
- * through their points; and linear again.
+ * @brief Curves the cells of a mesh, with order 2 to 4, to a geometry or to the smooth surface
+ * through their points; or makes them linear again.
  *
- * Takes triangles, quadrilaterals, tetrahedra, hexahedra, wedges and pyramids, also mixed and
- * beside lines and vertices, linear or curved, of planes, surfaces in space and volumes. Nodes of
- * order 2 to 4 are added on their edges and faces and inside; cells share those of common edges and
- * faces. Those on the boundary are placed
+ * Supports triangles, quadrilaterals, tetrahedra, hexahedra, wedges and pyramids, also mixed and
+ * beside lines and vertices, linear or curved, in planes, surfaces in space and volumes. Nodes of
+ * order 2 to 4 are added on edges, on faces and inside; cells share the nodes of common edges and
+ * faces. Nodes on the boundary are placed
  *
  * - on a Geometry (port 1), if there is one;
- * - else on a smooth surface that is reconstructed from the facets, with cubic curves in place of
+ * - otherwise on a smooth surface reconstructed from the facets, with cubic curves in place of
  *   edges (tautline/Boundary/SurfaceModel.h). Sharp edges (FeatureAngle) and borders become
- *   smooth curves of their own, corners stay;
- * - or in the middle of the straight edges, if Surface is STRAIGHT. This straightens curved cells,
- *   too.
+ *   separate smooth curves; corners stay;
+ * - or in the middle of the straight edges, if Surface is STRAIGHT. This also straightens curved
+ *   cells.
  *
- * The nodes inside follow, by transfinite interpolation. Cells that are curved already keep their
- * shape if they get the same or a higher order; a lower order interpolates it at its nodes, order 1
- * keeps the corners. Every cell of the output is certified: its Jacobian determinant is positive
- * everywhere, or it is counted as invalid. Where the boundary bends much within a cell, cells may
- * be invalid: run Untangle Mesh on the output.
+ * The interior nodes follow by transfinite interpolation. Cells that are already curved keep their
+ * shape if they get the same or a higher order; a lower order interpolates it at its nodes, and
+ * order 1 keeps the corners. Every cell of the output is certified: its Jacobian determinant is
+ * positive everywhere, or it is counted as invalid. Cells may be invalid where the boundary bends
+ * strongly within a cell: run Untangle Mesh on the output.
  *
  * Types of cells: VTK's quadratic cells with all nodes (22, 28, 24, 29, 32, 37) or, with
- * Serendipity, those without nodes on quadrilaterals and inside (23, 25, 26, 27) for order 2;
- * Lagrange cells (69 to 73) for orders 3 and 4. VTK has no pyramids of order 3 or 4: they are
- * refused.
+ * Serendipity, its quadratic cells without nodes on quadrilaterals and inside (23, 25, 26, 27) for
+ * order 2; Lagrange cells (69 to 73) for orders 3 and 4. Pyramids of order 3 or 4 do not exist in
+ * VTK and are not supported.
  *
  * @par Input ports:
  * 0 the mesh; 1 (optional) the geometry: a surface of triangles or quadrilaterals (STL, a finer
- * mesh); of a planar mesh the outline: lines, or cells in its plane. Its corners, curves and
+ * mesh); for a planar mesh the outline: lines, or cells in its plane. Its corners, curves and
  * patches are matched to the features of the mesh, as in vtkMeshOptimizer. The corners of the
- * boundary are placed on it, too.
+ * boundary are also placed on it.
  *
  * @par Input array 0 (optional, SetInputArrayToProcess):
- * A cell array with regions, between which boundaries are curved, too.
+ * A cell array of regions, whose interfaces are also curved.
  *
  * @par Output:
  * An unstructured grid with points in double precision. The points of the input come first, in
- * their order, without nodes of curved cells; then the new ones, whose point data are interpolated
- * by the functions of the given cells. Global ids of points and flags of ghost points are dropped;
- * cell data and field data are kept. The cell array `Validity` is added (see vtkElementQuality).
+ * their order, without nodes of curved cells; then the new points, whose point data are
+ * interpolated with the shape functions of the input cells. Global ids of points and flags of ghost
+ * points are dropped; cell data and field data are kept. The cell array `Validity` is added (see
+ * vtkElementQuality).
  *
  * @par Several processes:
  * The pieces are gathered on the first process.
@@ -91,7 +92,7 @@ public:
   ///@}
 
   ///@{
-  /// Of order 2: no nodes on quadrilaterals and inside, as most solvers have it. The default is
+  /// For order 2: omit nodes on quadrilaterals and inside, as most solvers expect. The default is
   /// off.
   vtkSetMacro(Serendipity, bool);
   vtkGetMacro(Serendipity, bool);
@@ -105,9 +106,8 @@ public:
   };
   ///@{
   /**
-   * Where the nodes of the boundary are. SMOOTH, the default: on the smooth surface through the
-   * points, or on the geometry; cells that are curved keep their shape. STRAIGHT: all edges are
-   * straight.
+   * The position of the boundary nodes. SMOOTH, the default: on the smooth surface through the
+   * points, or on the geometry; curved cells keep their shape. STRAIGHT: all edges are straight.
    */
   vtkTautlineSetRangeMacro(Surface, int, SMOOTH, STRAIGHT);
   vtkGetMacro(Surface, int);
@@ -115,8 +115,8 @@ public:
 
   ///@{
   /**
-   * Edges at which the boundary bends by more than so many degrees are sharp, and so are points at
-   * which a sharp edge does. The default is 40.
+   * Edges at which the boundary bends by more than this angle, in degrees, are sharp, and so are
+   * points at which a sharp edge bends by more. The default is 40.
    */
   vtkTautlineSetRangeMacro(FeatureAngle, double, 0.0, 180.0);
   vtkGetMacro(FeatureAngle, double);
@@ -124,9 +124,9 @@ public:
 
   ///@{
   /**
-   * Whether, if more cells are invalid than in the input, nodes around these move, corners too,
-   * until all cells are valid; nodes of the boundary slide on the curved boundary, see
-   * tautline/Curved/UntangleCurved.h. Not of surfaces in space. The default is on.
+   * Whether to move nodes around invalid cells, including corners, until all cells are valid, if
+   * more cells are invalid than in the input; boundary nodes slide on the curved boundary, see
+   * tautline/Curved/UntangleCurved.h. Not for surfaces in space. The default is on.
    */
   vtkSetMacro(Repair, bool);
   vtkGetMacro(Repair, bool);
@@ -135,7 +135,7 @@ public:
 
   ///@{
   /**
-   * Whether points with the same coordinates on facets that match are treated as one, as on the
+   * Whether to treat points with the same coordinates on matching facets as one, for example on the
    * seams of a mesh in pieces; the output keeps them all. The default is on. See
    * tautline/Mesh/CoincidentPoints.h.
    */
@@ -146,10 +146,10 @@ public:
 
   ///@{
   /**
-   * Results of the last execution, of all blocks: the nodes that were added; the invalid cells of
-   * the input and of the output, certified; the largest distance, and the mean, of the nodes of the
-   * boundary from where the cells of the input have them; the largest distance of the boundary from
-   * the geometry before and after, 0 without one.
+   * Results of the last execution, over all blocks: the number of added nodes; the numbers of
+   * invalid cells in the input and the output, certified; the largest and the mean distance of the
+   * boundary nodes from their positions in the input cells; the largest distance of the boundary
+   * from the geometry before and after, 0 without a geometry.
    */
   vtkGetMacro(AddedNodes, vtkIdType);
   vtkGetMacro(InvalidBefore, vtkIdType);

@@ -12,7 +12,7 @@
 
 namespace tautline
 {
-/// Calls visit(a, b) for the edges of all cells of a view; of lines and polygons too.
+/// Calls visit(a, b) for the edges of all cells of a view, including lines and polygons.
 template <class Visit>
 void forEachEdge(const MeshView& view, const Visit& visit)
 {

@@ -36,7 +36,7 @@ void forEachPoint(const MeshView& view, Index cell, const Mark& mark)
     view.connectivity + view.offsets[cell], view.connectivity + view.offsets[cell + 1], mark);
 }
 
-/// Marks the points where chosen(value) holds, of cells all their points.
+/// Marks the points, or all points of the cells, for which chosen(value) holds.
 template <class Chosen>
 void markWhere(
   const Mesh& mesh, vtkDataArray* array, bool ofCells, PointFlags& flags, const Chosen& chosen)
@@ -79,7 +79,7 @@ PointFlags pointsOfParts(const PartChoice& choice)
       [](char outer) { return char(!outer); });
     if (std::find(chosen.begin(), chosen.end(), 1) == chosen.end())
     {
-      std::fill(chosen.begin() + 1, chosen.end(), 1); // nothing but an outside
+      std::fill(chosen.begin() + 1, chosen.end(), 1); // only an outer boundary
     }
   }
   PointFlags flags(parts.part.size());
@@ -102,8 +102,8 @@ void requireShapes(Index shapeless)
   if (shapeless > 0)
   {
     throw Error("The mesh has " + std::to_string(shapeless) +
-      " polygons, polyhedra or other cells that cannot be warped: run Tetrahedralize first, "
-      "which cuts all cells into triangles or tetrahedra.");
+      " polygons, polyhedra or other cells that cannot be warped: run Tetrahedralize first to cut "
+      "all cells into triangles or tetrahedra.");
   }
 }
 
@@ -132,7 +132,7 @@ void requireElements(const MovableMesh& mesh)
   if (inverted > 0)
   {
     throw Error(std::to_string(inverted) +
-      " elements are inverted or degenerate before anything moves, the first is element " +
+      " elements are inverted or degenerate before the warp; the first is element " +
       std::to_string(first) + ": run Untangle Mesh first.");
   }
 }
@@ -144,8 +144,7 @@ PointFlags boundaryOf(const Mesh& mesh)
   PointFlags flags(boundary.begin(), boundary.end());
   if (count(flags) == 0)
   {
-    throw Error(
-      "The mesh has no boundary (it is closed), so there is nothing its points could follow.");
+    throw Error("The mesh has no boundary (it is closed) that its points could follow.");
   }
   return flags;
 }
@@ -164,7 +163,7 @@ PointFlags movedPoints(const Mesh& mesh, const PointFlags& boundary, const PartC
       if (choice.numbers.empty())
       {
         throw Error(
-          "No boundary part is given: add the numbers of those that move; 1 is the largest.");
+          "No boundary part is given: add the numbers of the parts that move; 1 is the largest.");
       }
       return pointsOfParts(choice);
     case MovedPart::Values:
@@ -189,8 +188,8 @@ void requireMoved(Index moved, Index chosen)
 {
   if (moved == 0)
   {
-    throw Error("Of the " + std::to_string(chosen) +
-      " points chosen to move none is on the boundary: choose others, or other values.");
+    throw Error("None of the " + std::to_string(chosen) +
+      " points chosen to move is on the boundary: choose others, or other values.");
   }
 }
 
@@ -211,7 +210,7 @@ PointFlags markedPoints(const Mesh& mesh, const PartChoice& choice)
   }
   if (!choice.selected && !choice.elsewhere)
   {
-    throw Error("Nothing is selected that could move: select points or cells and press Copy Active "
+    throw Error("No points to move are selected: select points or cells and press Copy Active "
                 "Selection, or choose another Moved Part.");
   }
   markPoints(mesh.view(), choice.selected, flags);
@@ -270,7 +269,7 @@ std::vector<double> displacementsOf(vtkDataArray* array, const PointFlags& flags
   if (wrong > 0)
   {
     throw Error(name + " is NaN or infinite at " + std::to_string(wrong) + " of " +
-      std::to_string(count(flags)) + " points of the boundary, the first is point " +
+      std::to_string(count(flags)) + " points of the boundary; the first is point " +
       std::to_string(first) + ": give each of them a displacement, 0 where it stays.");
   }
   return result;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MovedBoundary.h
- * @brief Which points of a mesh move, which stay, by how much; and tensors per cell. From arrays
- * and selections.
+ * @brief Derives the moving points of a mesh, their displacements, and the tensors per cell, from
+ * arrays and selections.
  */
 #ifndef tautline_MovedBoundary_h
 #define tautline_MovedBoundary_h
@@ -17,7 +17,7 @@ namespace tautline
 {
 using PointFlags = std::vector<unsigned char>; ///< one per point
 
-/// The numbers of vtkMeshWarp::MovedParts.
+/// The values of vtkMeshWarp::MovedParts.
 enum class MovedPart : int
 {
   Automatic = 0,
@@ -30,7 +30,7 @@ enum class MovedPart : int
 
 struct PartChoice
 {
-  std::function<const BoundaryParts&()> parts; ///< of the mesh; called only if they are needed
+  std::function<const BoundaryParts&()> parts; ///< of the mesh; called only if needed
   MovedPart part = MovedPart::Automatic;
   std::vector<int> numbers;      ///< Numbered
   std::vector<double> values;    ///< Values; empty: all but 0
@@ -41,12 +41,12 @@ struct PartChoice
 };
 
 /**
- * @brief Throws Error for what no warp can start from: inverted elements, coordinates that are not
- * finite, cells without a shape to keep (polygons, polyhedra), no boundary.
+ * @brief Throws Error for meshes that cannot be warped: with inverted elements, coordinates that
+ * are not finite, cells that are not elements (polygons, polyhedra), or no boundary.
  */
 void requireElements(const MovableMesh& mesh);
 
-/// Throws Error if there are cells without a shape to keep.
+/// Throws Error if there are cells that are not elements.
 void requireShapes(Index shapeless);
 /// Whether cells of a type (points and lines) have no inside that could be inverted.
 bool hasNoInside(int type);
@@ -54,12 +54,12 @@ bool hasNoInside(int type);
 /// Points on the boundary.
 PointFlags boundaryOf(const Mesh& mesh);
 
-/// Points of the boundary that are chosen. Throws Error if there is none.
+/// The chosen points of the boundary. Throws Error if there are none.
 PointFlags movedPoints(const Mesh& mesh, const PointFlags& boundary, const PartChoice& choice);
 
 /// The points that an array or a selection chooses, on the boundary or not.
 PointFlags markedPoints(const Mesh& mesh, const PartChoice& choice);
-/// Throws Error if of the chosen points none is on the boundary.
+/// Throws Error if none of the chosen points is on the boundary.
 void requireMoved(Index moved, Index chosen);
 
 /// Marks the points of ghost cells.
@@ -69,13 +69,13 @@ void markGhosts(vtkDataSet* input, PointFlags& flags);
 /// that are not finite.
 std::vector<double> displacementsOf(vtkDataArray* array, const PointFlags& flags);
 
-/// 6 per cell of 1, 3, 6 or 9 components.
+/// 6 per cell, from 1, 3, 6 or 9 components.
 std::vector<double> tensorsOf(vtkDataArray* array);
 /// 6 per cell, by regions: value, alpha, beta, gamma.
 std::vector<double> tensorsOf(vtkDataArray* regions,
   const std::vector<std::array<double, 4>>& coefficients, const double* otherwise);
 /// Throws Error if the 6 coefficients of a cell are not finite or not positive semidefinite.
-/// @param where "mesh" or "piece", whose cell it is
+/// @param where the owner of the cell, "mesh" or "piece"
 void requireTensor(const double* tensor, Index cell, const char* where);
 }
 #endif

@@ -14,7 +14,7 @@ namespace
 {
 constexpr double NotGiven = std::numeric_limits<double>::infinity();
 
-/// Takes the least of what the pieces give for a point.
+/// Takes the smallest of the values that the pieces give for a point.
 /// @param given 3 per point of the piece
 void takeLeast(
   const MovableMesh& mesh, const std::vector<double>& given, double amount, PieceMotion& motion)

@@ -48,14 +48,14 @@ bool RestingMesh::sameAs(vtkPointSet* input, int threads) const
 //------------------------------------------------------------------------------
 void RestingMesh::take(vtkPointSet* input, int threads, bool mergePoints)
 {
-  // What was taken shares its arrays with its owner, who may have changed them in place.
+  // The copy shares its arrays with the input, which may have been changed in place.
   if (this->data && this->data->GetMTime() <= this->time && mergePoints == this->MergePoints &&
     input->HasAnyGhostCells() == this->data->HasAnyGhostCells() && this->sameAs(input, threads))
   {
     return;
   }
   this->warper.reset();
-  this->data = nullptr; // so that it is not taken for good if what follows throws
+  this->data = nullptr; // so that it does not count as up to date if an exception follows
   vtkSmartPointer<vtkPointSet> copy = structureOf(input);
   this->mesh.reset(); // refers to the other
   this->curved = hasCurvedCells(copy) ? std::make_unique<CurvedMesh>(copy, threads) : nullptr;

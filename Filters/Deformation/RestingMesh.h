@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file RestingMesh.h
- * @brief The mesh that Warp Mesh starts from.
+ * @brief The initial mesh of Warp Mesh.
  */
 #ifndef tautline_RestingMesh_h
 #define tautline_RestingMesh_h
@@ -18,15 +18,15 @@
 
 namespace tautline
 {
-/// Points, cells, their orders and which are ghosts; without other arrays, whose changes do not
+/// Points, cells, their orders and the ghost flags, without other arrays, whose changes do not
 /// matter.
 vtkSmartPointer<vtkPointSet> structureOf(vtkPointSet* input);
 
-/// A mesh at rest, and what was made of it.
+/// A mesh at rest, with derived data.
 struct RestingMesh
 {
   vtkSmartPointer<vtkPointSet> data;
-  vtkMTimeType time = 0;              ///< of data when it was taken
+  vtkMTimeType time = 0;              ///< modification time of data when it was taken
   std::unique_ptr<CurvedMesh> curved; ///< null: all cells are linear
   std::unique_ptr<MovableMesh> mesh;  ///< of the corners
   PointFlags boundary;                ///< also nodes between corners
@@ -34,17 +34,17 @@ struct RestingMesh
   std::vector<unsigned char> types;
   std::vector<Index> offsets, connectivity, cells;
   std::unique_ptr<Mesh> elements;
-  // What the warper was made with and refers to.
+  // The data that the warper was made with and refers to.
   PointFlags prescribed;
   std::vector<double> tensors, options, elementTensors;
   std::unique_ptr<Warper> warper;
 
-  /// Takes a data set, unless it is the one that is here. Throws Error if nothing can be warped.
+  /// Takes a data set, unless it is already here. Throws Error if it cannot be warped.
   void take(vtkPointSet* input, int threads, bool mergePoints);
-  /// What is warped.
+  /// The mesh to warp.
   const Mesh& warped() const { return this->elements ? *this->elements : this->mesh->mesh(); }
 
-  /// Of its boundary; computed on first use.
+  /// The parts of its boundary; computed on first use.
   const BoundaryParts& parts() const;
 
 private:

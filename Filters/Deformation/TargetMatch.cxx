@@ -30,58 +30,59 @@ namespace tautline
 namespace
 {
 using Flags = std::vector<unsigned char>;
-constexpr const char* OriginalIds = "vtkOriginalPointIds"; // as vtkDataSetSurfaceFilter names them
+constexpr const char* OriginalIds = "vtkOriginalPointIds"; // as in vtkDataSetSurfaceFilter
 constexpr Index None = -1;
 
 constexpr const char* EmptyTarget = "The target is empty: choose another one.";
 constexpr const char* NoIdsChosen =
   "No array of point ids is chosen: choose one of the target's point arrays.";
-/// What to do where the order of a target's points is not that of the mesh's.
+/// The remedy if the order of the target's points differs from the mesh's.
 constexpr const char* OrderRemedy =
   "Choose Point Ids, an array that both have; or run Generate Global Ids on the mesh in one piece, "
-  "before it is cut and the target is made of it; or let each process have the same pieces of "
+  "before it is divided and the target is made from it; or give each process the same pieces of "
   "both; or choose Closest Point.";
 
-/// The target is not the mesh in another place: it has other numbers of points.
+/// Throws if the target is not the mesh in another position: the numbers of points differ.
 Error otherMesh(Index points, Index ofMesh)
 {
   return Error("The target has " + std::to_string(points) + " points and the mesh has " +
     std::to_string(ofMesh) + ": it is not the same mesh. Choose another Correspondence.");
 }
 
-/// The same, as it has other cells.
+/// The same if the cells differ.
 Error otherCells()
 {
-  return Error("The target has as many points as the mesh, but not its cells in the order of the "
-               "global ids, or of the pieces. " +
+  return Error("The target has as many points as the mesh, but, in the order of the global ids or "
+               "of the pieces, other cells. " +
     std::string(OrderRemedy));
 }
 
-/// The target is not the boundary, or the points that move.
+/// Throws if the target is neither the boundary nor the moving points.
 Error otherBoundary(Index points, Index moving)
 {
   return Error("The target has " + std::to_string(points) + " points, of the mesh " +
     std::to_string(moving) +
-    " points move, and its cells are not those of the boundary in the same order: choose another "
-    "Correspondence, or what moves.");
+    " points move, and its cells are not the boundary's cells in the same order: choose another "
+    "Correspondence, or another Moved Part.");
 }
 
-/// The target has an array of point ids that the mesh has not, and the mesh no order.
+/// Throws if the target has an array of point ids that the mesh lacks, and the mesh has no point
+/// order.
 Error noNumbers(const std::string& array)
 {
   return Error("The mesh has no array '" + array +
     "' of its own, and its points are on several processes, so that they have no numbers that the "
-    "target could refer to: give the mesh the array, too, or run Generate Global Ids before it is "
-    "cut.");
+    "target could refer to: add the array to the mesh, or run Generate Global Ids before the mesh "
+    "is divided.");
 }
 
-/// Points of several processes would correspond by an order that they have not.
+/// Throws if points of several processes would correspond by an order that they do not have.
 Error noOrder(Index points)
 {
   return Error("The target's " + std::to_string(points) +
-    " points would correspond to those of the mesh by their order, which is not known: mesh and "
-    "target are on several processes with other pieces of each, without an order of global ids of "
-    "both. " +
+    " points would correspond to the points of the mesh by their order, which is not known: mesh "
+    "and target are on several processes in different pieces, without a common order of global "
+    "ids. " +
     OrderRemedy);
 }
 
@@ -93,14 +94,14 @@ std::string describeProjection(Index points, double farthest)
     " away";
 }
 
-/// ": N of M points of the boundary", behind how they correspond.
+/// ": N of M points of the boundary", after the type of correspondence.
 std::string describeMatched(Index given, Index matched)
 {
   return ": " + std::to_string(given) + " of " + std::to_string(matched) +
     " points of the boundary";
 }
 
-/// Throws Error if target points that are given have coordinates that are not finite.
+/// Throws Error if used target points have coordinates that are not finite.
 void requireFiniteTarget(Index wrong)
 {
   if (wrong > 0)
@@ -112,14 +113,14 @@ void requireFiniteTarget(Index wrong)
   }
 }
 
-/// Throws Error if values of an array of the target are none of the mesh.
+/// Throws Error if values of an array of the target do not occur in the mesh.
 void requireKnownIds(Index unknown, const std::string& array, bool ofMesh)
 {
   if (unknown > 0)
   {
     throw Error("The target's array '" + array + "' has " + std::to_string(unknown) +
-      " values that are no " +
-      (ofMesh ? "values of the mesh's array of that name" : "point of the mesh") +
+      " values that do not occur " +
+      (ofMesh ? "in the mesh's array of that name" : "as point numbers of the mesh") +
       ": choose another array, or None.");
   }
 }
@@ -146,7 +147,7 @@ struct EdgeHash
   }
 };
 
-/// The boundary of a mesh as ParaView's Extract Surface makes it, with vtkOriginalPointIds.
+/// The boundary of a mesh, as made by ParaView's Extract Surface, with vtkOriginalPointIds.
 vtkSmartPointer<vtkPolyData> skinOf(vtkDataSet* mesh)
 {
   vtkNew<vtkDataSetSurfaceFilter> surface;
@@ -156,7 +157,7 @@ vtkSmartPointer<vtkPolyData> skinOf(vtkDataSet* mesh)
   return surface->GetOutput();
 }
 
-/// The boundary edges of a surface as ParaView's Feature Edges makes them.
+/// The boundary edges of a surface, as made by ParaView's Feature Edges.
 vtkSmartPointer<vtkPolyData> rimOf(vtkPolyData* surface)
 {
   vtkNew<vtkFeatureEdges> edges;
@@ -174,8 +175,8 @@ void requireSurface(int dimension, bool ofVolume)
   if (dimension < (ofVolume ? 2 : 1))
   {
     throw Error(std::string("The target has no ") + (ofVolume ? "surface" : "curve") +
-      " the boundary could be moved to, and its points do not correspond to those of the mesh: "
-      "give a " +
+      " that the boundary could be moved to, and its points do not correspond to the points of the "
+      "mesh: give a " +
       (ofVolume ? "surface" : "curve") + ", or point ids.");
   }
 }
@@ -188,9 +189,9 @@ struct Projection
 };
 
 /**
- * @brief The closest points of a surface, or of a curve for a planar mesh. Throws Error if it has
- * no cells, and where none is closest, with the place.
- * @param points 3 per point @param flags one per point: the others do not move
+ * @brief The closest points on a surface, or on a curve for a planar mesh. Throws Error if it has
+ * no cells or if a point has no closest point, with its position.
+ * @param points 3 per point @param flags one per point, set for points that move
  */
 Projection projected(
   vtkDataSet* surface, const double* points, const std::vector<unsigned char>& flags)
@@ -250,7 +251,7 @@ public:
   {
   }
 
-  /// For each point of the target a point of the mesh, or None; empty if there is no
+  /// For each point of the target, a point of the mesh or None; empty if there is no
   /// correspondence.
   std::vector<Index> match(std::string& how)
   {
@@ -280,7 +281,7 @@ public:
         how = "as the same mesh, point by point";
         return ids;
       }
-      // By ids of its own the target is another mesh to all appearances.
+      // With ids of its own, the target appears to be another mesh.
       if (requested == Correspondence::SameMesh ||
         (this->Order != PointOrder::Given &&
           this->target().numberOfCells == this->View.numberOfCells))
@@ -343,7 +344,7 @@ private:
     return result;
   }
 
-  /// Whether each edge of the target is one of the mesh, once its points are numbered so.
+  /// Whether each edge of the target is an edge of the mesh under this numbering of its points.
   bool fits(const std::vector<Index>& ids)
   {
     if (this->target().numberOfPoints == this->View.numberOfPoints &&
@@ -387,7 +388,7 @@ private:
     return this->fits(ids) ? ids : std::vector<Index>();
   }
 
-  /// The points of the mesh that those of a skin are; may be empty.
+  /// The mesh points of the points of a skin; may be empty.
   static std::vector<Index> pointsOf(vtkPolyData* skin)
   {
     std::vector<Index> ids;
@@ -399,7 +400,7 @@ private:
     return ids;
   }
 
-  /// As ParaView's Extract Surface and Feature Edges number the points of the mesh at rest.
+  /// In the numbering by ParaView's Extract Surface and Feature Edges for the mesh at rest.
   std::vector<Index> bySurface() const
   {
     const auto surface = skinOf(this->Request.mesh);
@@ -413,7 +414,7 @@ private:
     return this->isTarget(edges) ? this->byPlace(edges) : std::vector<Index>();
   }
 
-  /// The same boundaries with their points in the order of the mesh, as assemble() leaves them.
+  /// The same boundaries with their points in the order of the mesh, as after assemble().
   std::vector<Index> bySurfaceIds()
   {
     const auto surface = skinOf(this->Request.mesh);
@@ -460,7 +461,7 @@ private:
       sameCells(MeshAdapter(made, this->Request.threads).mesh().view(), this->target());
   }
 
-  /// The points of the mesh where those of a part of it are.
+  /// The mesh points at the positions of the points of a part of it.
   std::vector<Index> byPlace(vtkPolyData* made) const
   {
     std::map<Vec3, Index> places;
@@ -487,12 +488,12 @@ private:
   const TargetRequest& Request;
   const MeshView& View;
   MeshAdapter Adapter;
-  PointOrder Order; ///< that points of mesh and target have in common
+  PointOrder Order; ///< common to the points of mesh and target
   std::unordered_set<std::pair<Index, Index>, EdgeHash> Edges;
 };
 
-/// What the boundary of a mesh can lie on: the target, or its boundary if it has as many dimensions
-/// as the mesh.
+/// The set that the boundary of a mesh can lie on: the target, or its boundary if it has the
+/// dimension of the mesh.
 vtkSmartPointer<vtkDataSet> surfaceOf(vtkDataSet* target, bool ofVolume)
 {
   const int expected = ofVolume ? 2 : 1;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TargetMatch.h
- * @brief The correspondence between the points of a mesh and the places of a target data set.
+ * @brief The correspondence between the points of a mesh and positions given by a target data set.
  */
 #ifndef tautline_TargetMatch_h
 #define tautline_TargetMatch_h
@@ -16,7 +16,7 @@ class vtkDataSet;
 
 namespace tautline
 {
-/// The numbers of vtkMeshWarp::Correspondences.
+/// The values of vtkMeshWarp::Correspondences.
 enum class Correspondence : int
 {
   Automatic = 0,
@@ -28,16 +28,17 @@ enum class Correspondence : int
 
 /// An error.
 constexpr const char* NoTarget =
-  "There is no Target: choose the data set that has the boundary in its new place.";
+  "There is no Target: choose the data set that has the boundary in its new position.";
 
 struct TargetRequest
 {
-  vtkDataSet* mesh = nullptr; ///< whose boundary moves, with its arrays
-  const Mesh* view = nullptr; ///< the same to the kernel
+  vtkDataSet* mesh = nullptr; ///< the mesh whose boundary moves, with its arrays
+  const Mesh* view = nullptr; ///< the same mesh as a kernel mesh
   vtkDataSet* target = nullptr;
   Correspondence correspondence = Correspondence::Automatic;
   vtkDataArray* ids = nullptr; ///< of the target, or null
-  /// One flag per point of the mesh: those that move; by projection or SameBoundary, and otherwise.
+  /// One flag per point of the mesh, set for moving points: by projection or SameBoundary, and
+  /// otherwise.
   const std::vector<unsigned char>* projected = nullptr;
   const std::vector<unsigned char>* matched = nullptr;
   int threads = 0;
@@ -45,15 +46,15 @@ struct TargetRequest
 
 struct TargetPlaces
 {
-  std::vector<double> displacement; ///< 3 per point, 0 where nothing is given
+  std::vector<double> displacement; ///< 3 per point, 0 where not given
   std::vector<unsigned char> given; ///< one flag per point
-  std::string how;                  ///< a sentence: which correspondence, how many, how far
+  std::string how;                  ///< a sentence: type of correspondence, number, distance
 };
 
-/// Throws Error that names what does not fit.
+/// Throws Error if the target does not fit.
 TargetPlaces placesOf(const TargetRequest& request);
 
-/// The point array of a target with a name; null for "" and "None". Throws Error if there is none.
+/// The named point array of a target; null for "" and "None". Throws Error if it is missing.
 vtkDataArray* chosenTargetIds(vtkDataSet* target, const std::string& name);
 }
 #endif

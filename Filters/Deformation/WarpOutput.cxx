@@ -22,7 +22,7 @@ namespace tautline
 namespace
 {
 constexpr const char* ShapeArray = "TMP shape";
-constexpr double Rounding = 1e-13; // smaller values are those of the same shape
+constexpr double Rounding = 1e-13; // smaller values mean the same shape
 
 template <class Array, class Values>
 void addCellArray(vtkDataSet* output, const char* name, const Values& values)
@@ -98,7 +98,7 @@ std::string describe(const WarpResult& result, const WarpFacts& facts, const War
   if (facts.following > 0)
   {
     text << " in the whole cell; " << facts.following << " nodes of curved cells followed their "
-         << "corners" << (q.inverted > 0 ? " (Untangle Mesh moves these, too)" : "");
+         << "corners" << (q.inverted > 0 ? " (Untangle Mesh also moves these)" : "");
   }
   if (result.invertedWarp > 0 && result.invertedWarp != q.inverted)
   {
@@ -109,8 +109,8 @@ std::string describe(const WarpResult& result, const WarpFacts& facts, const War
   {
     text << "\n"
          << result.impossible
-         << " of them cannot be valid wherever the interior goes: the moved boundary is not valid "
-            "itself. This is the best mesh found.";
+         << " of them cannot be valid for any position of the interior: the moved boundary itself "
+            "is not valid. This is the best mesh found.";
   }
   text << "\nShape against the mesh at rest: mean " << q.shape.mean << ", worst " << q.shape.worst
        << " (0 is the same).\n"
@@ -131,17 +131,17 @@ std::string describe(const WarpResult& result, const WarpFacts& facts, const War
   }
   if (result.amount < 1)
   {
-    text << "\nIt came to " << 100 * result.amount << " % of the motion.";
+    text << "\nIt completed " << 100 * result.amount << " % of the motion.";
   }
   text << std::setprecision(2) << "\nSeconds: assemble " << result.assembleSeconds << ", set-up "
        << result.setupSeconds << ", solve " << result.solveSeconds << ", improve "
        << result.improveSeconds << ", in all " << facts.seconds
-       << (facts.reused ? "; the matrices were those of the run before." : ".");
+       << (facts.reused ? "; the matrices of the previous run were reused." : ".");
   return text.str();
 }
 /**
- * The shape (4.22) of each cell against that before, with targets. Volumes are measured range by
- * range, as the targets of a cell need nine times the memory of its value.
+ * The shape metric (4.22) of each cell relative to the initial cell as its target. Volumes are
+ * measured range by range, because the targets of a cell need nine times the memory of its value.
  * @param values one per cell, filled
  */
 void measureSimilarity(
@@ -154,7 +154,7 @@ void measureSimilarity(
     solid += topology(block.type).dimension == 3 ? block.count : 0;
   }
   constexpr Index range = Index(1) << 18;
-  const Index step = solid == cells ? range : cells; // a plane is that of all cells
+  const Index step = solid == cells ? range : cells; // the plane is common to all cells
   for (Index first = 0; first < cells; first += step)
   {
     const auto partOf = [&](const Mesh& mesh)
@@ -184,7 +184,7 @@ void addWarpArrays(
     shape.begin(), shape.end(), [](double value) { return value < Rounding; }, 0.0);
   addCellArray<vtkDoubleArray>(output, ShapeArray, shape);
   addCellArray<vtkSignedCharArray>(output, "Validity", validity);
-  // Without active point scalars, views colour by the shape.
+  // Without active point scalars, views color by the shape.
   output->GetPointData()->SetActiveScalars(nullptr);
   output->GetCellData()->SetActiveScalars(ShapeArray);
 }

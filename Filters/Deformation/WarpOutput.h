@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file WarpOutput.h
- * @brief The results of Warp Mesh as arrays, rows of tables and sentences.
+ * @brief Writes the results of Warp Mesh as arrays, rows of tables and sentences.
  */
 #ifndef tautline_WarpOutput_h
 #define tautline_WarpOutput_h
@@ -13,17 +13,17 @@
 
 namespace tautline
 {
-/// What is known of a data set beside the result of the kernel.
+/// Facts on a data set in addition to the result of the kernel.
 struct WarpFacts
 {
   std::string method;        ///< its name
-  std::string motion;        ///< how the target corresponds, or ""
-  bool coefficients = false; ///< whether the method has any
+  std::string motion;        ///< the correspondence of the target, or ""
+  bool coefficients = false; ///< whether the method has coefficients
   double amount = 1.0;
   Index boundaryPoints = 0, movedPoints = 0;
-  double largestDisplacement = 0.0; ///< of what is given, at the amount
+  double largestDisplacement = 0.0; ///< of the given displacements, scaled by the amount
   bool reused = false;
-  double seconds = 0.0; ///< all of it
+  double seconds = 0.0; ///< total
   int threads = 0;
   Index following = 0; ///< nodes between the corners of curved cells
 };
@@ -45,7 +45,7 @@ struct WarpQualities
 struct WarpTotals
 {
   Index invertedAfterWarp = 0, inverted = 0, impossible = 0;
-  bool incomplete = false; ///< some did not come to the end of their motion
+  bool incomplete = false; ///< some did not complete their motion
   double worstShape = 0.0;
   int reused = 0;
   std::string summary;
@@ -53,9 +53,9 @@ struct WarpTotals
 
 /**
  * @brief Gives the output the new points and the arrays `Displacement`, `TMP shape` (the active
- * scalars) and `Validity`, adds rows to the tables and to the totals. Of a mesh in pieces: the
- * numbers are of the whole mesh, the rows for the first process, and the memory of the mesh and of
- * the points is freed; collective.
+ * scalars) and `Validity`, and adds rows to the tables and to the totals. For a mesh in pieces, the
+ * numbers cover the whole mesh, the rows are added on the first process, and the memory of the mesh
+ * and of the points is freed; collective.
  */
 void addWarpOutput(MovableMesh& rest, WarpResult& result, const WarpFacts& facts,
   const InputBlock& block, TableRows& history, TableRows& statistics, WarpTotals& totals);

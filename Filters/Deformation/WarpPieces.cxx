@@ -23,14 +23,14 @@ namespace tautline
 {
 namespace
 {
-/// The points of one piece of a motion: the moved ones of all processes, in the order of their ids.
+/// The moved points of all processes, in the order of their ids.
 struct MovedPoints
 {
   std::vector<Index> ids;
   std::vector<double> places; ///< 3 each
 };
 
-/// A copy of all but the points, which may not fit twice into memory.
+/// A copy of everything except the points, which may not fit into memory twice.
 WarpResult copyWithoutPoints(WarpResult& result)
 {
   std::vector<double> points;
@@ -52,7 +52,7 @@ public:
 
 private:
   DistributedMesh& local() { return this->Whole.distributed(); }
-  /// Whether the piece has cells: another one need not have arrays.
+  /// Whether the piece has cells; a piece without cells need not have arrays.
   bool here() const
   {
     return this->Piece.input->GetNumberOfPoints() > 0 && this->Piece.input->GetNumberOfCells() > 0;
@@ -80,11 +80,11 @@ private:
   const WarpSettings& Settings;
   RankGroup& Group;
   MovableMesh& Whole;
-  const InputBlock& Piece; ///< at this time step; the mesh is that of the first
-  vtkDataSet* Selected;    ///< with what is selected to move, or null
+  const InputBlock& Piece; ///< at this time step; the mesh is the first step's
+  vtkDataSet* Selected;    ///< with marks on the selected points, or null
   std::vector<Index> Ids;  ///< per local point
   PointFlags Boundary, Moved;
-  WarpTask Task;     ///< of the local points and cells
+  WarpTask Task;     ///< for the local points and cells
   MovedPoints Cloud; ///< of a transform
 };
 
@@ -113,7 +113,7 @@ Index PieceWarp::countInvalid(const std::vector<double>& points)
 }
 
 //------------------------------------------------------------------------------
-/// As requireElements() of a mesh in one place.
+/// Like requireElements() for a mesh on one process.
 void PieceWarp::requireElements()
 {
   const MeshView& view = this->Whole.piece();
@@ -129,7 +129,7 @@ void PieceWarp::requireElements()
   if (inverted > 0)
   {
     throw Error(std::to_string(inverted) +
-      " elements are inverted or degenerate before anything moves: run Untangle Mesh first.");
+      " elements are inverted or degenerate before the warp: run Untangle Mesh first.");
   }
 }
 
@@ -168,7 +168,7 @@ PointFlags PieceWarp::chosenToMove()
 }
 
 //------------------------------------------------------------------------------
-/// The points that are chosen to stay, per local point.
+/// The points chosen to stay, per local point.
 PointFlags PieceWarp::staying()
 {
   PointFlags marked(this->Whole.piece().numberOfPoints, 0);
@@ -181,7 +181,7 @@ PointFlags PieceWarp::staying()
 }
 
 //------------------------------------------------------------------------------
-/// Of points that are one all pieces must have the same displacement.
+/// All pieces must have the same displacement for merged points.
 void PieceWarp::moveByArray()
 {
   const Index points = this->Whole.piece().numberOfPoints;
@@ -202,14 +202,14 @@ void PieceWarp::moveByArray()
     });
   if (motion.farthest > 0)
   {
-    throw Error("Points at the same place are treated as one, but have different displacements: "
-                "make them equal, or switch Merge Coincident Points off.");
+    throw Error("Coincident points are treated as one, but have different displacements: make them "
+                "equal, or switch Merge Coincident Points off.");
   }
   this->Task.displacement = std::move(motion.displacement);
 }
 
 //------------------------------------------------------------------------------
-/// The boundary goes to where it is at this time step.
+/// The boundary moves to its position at this time step.
 void PieceWarp::moveOverTime()
 {
   if (this->Session.times.empty())
@@ -229,17 +229,17 @@ void PieceWarp::moveOverTime()
     throw Error("The displacements of " + std::to_string(motion.broken) +
       " prescribed points are NaN or infinite.");
   }
-  constexpr double rounding = 1e-6; // of the size of the mesh: single precision has 1e-7
+  constexpr double rounding = 1e-6; // relative to the size of the mesh: single precision has 1e-7
   if (motion.farthest > rounding * diagonalOf(this->local()))
   {
-    throw Error("Points at the same place are treated as one, but have different positions at this "
-                "time step: make them equal, or switch Merge Coincident Points off.");
+    throw Error("Coincident points are treated as one, but have different positions at this time "
+                "step: make them equal, or switch Merge Coincident Points off.");
   }
   this->Task.displacement = std::move(motion.displacement);
 }
 
 //------------------------------------------------------------------------------
-/// The displacements by a fraction of the transform, per local point.
+/// The displacements for a fraction of the transform, per local point.
 std::vector<double> PieceWarp::transformed(double fraction)
 {
   const auto count = static_cast<Index>(this->Cloud.ids.size());
@@ -260,7 +260,7 @@ std::vector<double> PieceWarp::transformed(double fraction)
 }
 
 //------------------------------------------------------------------------------
-/// The motion depends on where all moved points are: every process has them.
+/// The motion depends on the positions of all moved points: every process gets them.
 void PieceWarp::moveByTransform()
 {
   struct MovedPoint
@@ -295,7 +295,7 @@ void PieceWarp::moveByTransform()
 }
 
 //------------------------------------------------------------------------------
-/// Coefficients per cell of the piece, as those of the local cells.
+/// Converts coefficients per cell of the piece to the local cells.
 void PieceWarp::findTensors()
 {
   const WarpSettings& set = this->Settings;
@@ -315,7 +315,7 @@ void PieceWarp::findTensors()
 }
 
 //------------------------------------------------------------------------------
-/// The displacements and the points that are prescribed, with those that stay.
+/// The displacements and the prescribed points, including points that stay.
 void PieceWarp::prescribe(WarpFacts& facts)
 {
   this->Task.stay = this->staying();
@@ -366,7 +366,7 @@ WarpResult PieceWarp::resultOfStep()
 }
 
 //------------------------------------------------------------------------------
-/// As WarpSession::warpFromPrevious().
+/// Like WarpSession::warpFromPrevious().
 WarpResult PieceWarp::warpFromPrevious(const WarpResult& previous)
 {
   DistributedMesh& mesh = this->local();
@@ -395,7 +395,7 @@ WarpResult PieceWarp::warp()
 }
 
 //------------------------------------------------------------------------------
-/// From where the points of the mesh are.
+/// Starts from the current points of the mesh.
 WarpResult PieceWarp::run(const WarpTask& task)
 {
   const WarpSettings& set = this->Settings;
@@ -410,7 +410,8 @@ WarpResult PieceWarp::run(const WarpTask& task)
 }
 
 //------------------------------------------------------------------------------
-/// Adds arrays and rows. What has moved the mesh is freed, as it is as large as what is measured.
+/// Adds arrays and rows. The data of the motion are freed, because they are as large as the data of
+/// the measurement.
 void PieceWarp::report(WarpResult& result, WarpFacts& facts, TableRows& history,
   TableRows& statistics, WarpTotals& totals)
 {
@@ -449,8 +450,7 @@ void PieceWarp::run(TableRows& history, TableRows& statistics, WarpTotals& total
   this->Boundary = rankBoundary(this->local());
   if (this->countOwned(this->Boundary) == 0)
   {
-    throw Error(
-      "The mesh has no boundary (it is closed), so there is nothing its points could follow.");
+    throw Error("The mesh has no boundary (it is closed) that its points could follow.");
   }
   this->findMotion();
   WarpFacts counts;
@@ -469,7 +469,7 @@ void PieceWarp::run(TableRows& history, TableRows& statistics, WarpTotals& total
   this->report(result, facts, history, statistics, totals);
 }
 
-/// Whether a piece has as many points as another and the same cells; null is empty.
+/// Whether two pieces have equal numbers of points and the same cells; null counts as empty.
 bool haveSameCells(vtkDataSet* piece, vtkDataSet* other)
 {
   if (!other || other->GetNumberOfPoints() != piece->GetNumberOfPoints() ||
@@ -490,7 +490,7 @@ bool haveSameCells(vtkDataSet* piece, vtkDataSet* other)
   return true;
 }
 
-/// Whether a piece has as many points as another and the same global ids, or both have none.
+/// Whether two pieces have equal numbers of points and the same global ids, or both have none.
 bool haveSameIds(vtkDataSet* piece, vtkDataSet* other)
 {
   vtkDataArray* a = piece->GetPointData()->GetGlobalIds();
@@ -504,10 +504,10 @@ bool haveSameIds(vtkDataSet* piece, vtkDataSet* other)
   return same;
 }
 
-/// Whether a piece has the points and cells that another has, wherever the points are.
+/// Whether two pieces have the same points and cells, at any positions.
 bool areAlike(vtkDataSet* piece, vtkDataSet* other)
 {
-  // Null is blocks; another is also null if the first piece was none with points of its own.
+  // Null stands for blocks; the other is also null if the first piece had no explicit points.
   return piece && other && haveSameCells(piece, other) && haveSameIds(piece, other);
 }
 }

@@ -20,7 +20,7 @@ namespace tautline
 {
 namespace
 {
-// Coordinates of the time steps that are kept: 2^27 numbers, 1 GiB, of a data set.
+// The limit on the coordinates of kept time steps, per data set: 2^27 numbers, 1 GiB.
 constexpr std::size_t MaximumNumbersKept = std::size_t(1) << 27;
 
 constexpr std::array<const char*, 13> MethodNames = { "Hybrid", "FEMWARP", "Anisotropic FEMWARP",
@@ -35,7 +35,7 @@ double norm3(const double* d)
   return std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
 }
 
-/// The target of a data set: that at its place, or the only one there is.
+/// The target of a data set: the one at its position, or the only one.
 vtkDataSet* targetOf(const InputBlock& block, vtkDataObject* target)
 {
   if (!target)
@@ -61,12 +61,12 @@ vtkDataSet* targetOf(const InputBlock& block, vtkDataObject* target)
   }
   if (!only)
   {
-    throw Error("The target has no data set in the place of this one of the mesh.");
+    throw Error("The target has no data set at the position of this data set of the mesh.");
   }
   return only;
 }
 
-/// Throws Error if points that have moved were put together in the order of their coordinates.
+/// Throws Error if moved points were assembled in the order of their coordinates.
 void requireOrderOverTime(vtkPointSet& first, vtkPointSet& now)
 {
   bool moved = pointOrder(&now) == PointOrder::Coordinates && &first != &now;
@@ -77,9 +77,9 @@ void requireOrderOverTime(vtkPointSet& first, vtkPointSet& now)
     now.GetPoint(i, b.data());
     if (a != b)
     {
-      throw Error("The pieces of the mesh are put together, and its points have moved since the "
-                  "first time step, so that their order is not known: run Generate Global Ids "
-                  "before, or Aggregate Dataset.");
+      throw Error(
+        "The pieces of the mesh are joined, and its points have moved since the first time step, "
+        "so that their order is not known: run Generate Global Ids first, or Aggregate Dataset.");
     }
   }
 }
@@ -168,7 +168,7 @@ WarpResult resultAtRest(const WarpSettings& settings, std::vector<double> points
   result.points = std::move(points); // bitwise
   result.history.resize(1);
   result.history[0].stage = "rest";
-  // Over time, the first step is at rest.
+  // For a motion over time, the first step is at rest.
   const bool still = settings.amount > 0 && settings.motion != MotionSource::TimeSteps;
   result.message = still ? NothingMoves : "";
   return result;
@@ -226,8 +226,8 @@ void WarpSession::agreeOnTimes(bool needed)
   if (other < count)
   {
     this->TimesProblem = "The time steps of process " + std::to_string(other) +
-      " are not those of process " + std::to_string(first) +
-      ": give all processes the same ones, or none to a process without cells.";
+      " differ from the time steps of process " + std::to_string(first) +
+      ": give all processes the same time steps; a process without cells may have none.";
   }
 }
 
@@ -247,12 +247,12 @@ void WarpSession::plan(std::optional<double> time, vtkMTimeType upstream, vtkMTi
   {
     return;
   }
-  // The last time step that is not later, as readers choose it; the first one before all of them.
+  // The last time step that is not later, as chosen by readers; before all of them, the first.
   const auto later =
     time ? std::upper_bound(this->times.begin(), this->times.end(), *time) : this->times.begin();
   const int here = static_cast<int>(later - this->times.begin()) - 1;
   this->requested = std::max(0, -minimumOverProcesses(-here));
-  // The processes begin again together.
+  // All processes start over together.
   const auto onAny = [](bool here) { return minimumOverProcesses(here ? 0 : 1) == 0; };
   const bool modified = onAny(own > this->Own);
   const bool changed =
@@ -287,7 +287,7 @@ void WarpSession::plan(std::optional<double> time, vtkMTimeType upstream, vtkMTi
       this->current = std::min(this->current, last + 1);
     }
   }
-  // All processes take the same time steps, as what is upstream may need them all.
+  // All processes request the same time steps, because the upstream filters may need all of them.
   this->current = minimumOverProcesses(this->current);
 }
 
@@ -320,7 +320,7 @@ void WarpSession::visit(const InputBlock& block, vtkDataObject* target, vtkDataO
     view.numberOfCells != input->GetNumberOfCells())
   {
     throw Error("At this time step the mesh has " + std::to_string(input->GetNumberOfPoints()) +
-      " points and " + std::to_string(input->GetNumberOfCells()) + " cells, at the first " +
+      " points and " + std::to_string(input->GetNumberOfCells()) + " cells; at the first " +
       std::to_string(view.numberOfPoints) + " and " + std::to_string(view.numberOfCells) +
       ": only its points may change over time.");
   }
@@ -375,7 +375,7 @@ PointFlags WarpSession::movingPoints(
     case MotionSource::Target:
       this->moveToTarget(block, rest, target, this->movedPart(block, rest, selected), task);
       break;
-    case MotionSource::Transform: // which may not have been chosen yet
+    case MotionSource::Transform: // which may not be chosen yet
       moveAlongX(this->movedPart(block, rest, selected));
       break;
     case MotionSource::TimeSteps:
@@ -425,7 +425,7 @@ WarpTask WarpSession::task(const InputBlock& block, const RestingMesh& rest, vtk
       this->moveByTransform(rest, this->movedPart(block, rest, selected), task);
       break;
   }
-  if (!task.path) // the way is straight
+  if (!task.path) // the path is straight
   {
     for (double& d : task.displacement)
     {
@@ -434,7 +434,7 @@ WarpTask WarpSession::task(const InputBlock& block, const RestingMesh& rest, vtk
   }
   this->prescribe(block, rest, task);
   task.tensors = chosenTensors(set, block.input);
-  // As cells of the input; the warper's are without lines, vertices and the surfaces of volumes.
+  // As cells of the input; the warper leaves out lines, vertices and the surfaces of volumes.
   const auto checked = rest.cells.empty() ? task.tensors.size() / 6 : rest.cells.size();
   for (std::size_t i = 0; i < checked && !task.tensors.empty(); ++i)
   {
@@ -454,7 +454,7 @@ void WarpSession::prescribe(const InputBlock& block, const RestingMesh& rest, Wa
     false, task.stay);
   markPoints(mesh.view(), block.selected, task.stay);
   markGhosts(block.input, task.stay);
-  // Of points that are one, the representative is of the mesh.
+  // Only the representative of merged points belongs to the mesh.
   const std::vector<Index>& one = rest.mesh->representative();
   for (std::size_t p = 0; p < one.size(); ++p)
   {
@@ -463,7 +463,7 @@ void WarpSession::prescribe(const InputBlock& block, const RestingMesh& rest, Wa
   }
   task.prescribed = rest.boundary;
   holdStaying(task);
-  // The nodes between corners are none of the mesh that is warped.
+  // The nodes between corners do not belong to the warped mesh.
   for (std::size_t i = 0; rest.curved && i < rest.curved->nodes().points().size(); ++i)
   {
     task.prescribed[rest.curved->nodes().points()[i]] = 0;
@@ -511,7 +511,7 @@ PointFlags WarpSession::movedPart(
   choice.selected = counterpartOf(block, selected);
   choice.elsewhere = selected && block.flatIndex > 0;
   PointFlags moved = movedPoints(rest.mesh->mesh(), rest.boundary, choice);
-  // Nodes between corners that move are of the same part.
+  // Nodes between moving corners belong to the same part.
   for (std::size_t i = 0; rest.curved && i < rest.curved->nodes().points().size(); ++i)
   {
     const Index point = rest.curved->nodes().points()[i];
@@ -582,7 +582,7 @@ WarpOptions WarpSession::optionsFor(const RestingMesh& rest, int blockNumber)
 }
 
 //------------------------------------------------------------------------------
-/// Whether the existing warper can be used again; makes a new one if not.
+/// Whether the existing warper can be reused; makes a new one if not.
 bool WarpSession::prepare(RestingMesh& rest, WarpTask& task, int blockNumber)
 {
   const std::vector<double> values = this->optionValues();
@@ -641,7 +641,7 @@ WarpResult WarpSession::warp(WarpBlock& kept, WarpTask& task, int blockNumber, b
   }
   if (rest.elements && result.message.find("cell ") != std::string::npos)
   {
-    result.message += " Cells are counted without lines, vertices and the surfaces of volumes.";
+    result.message += " Lines, vertices and the surfaces of volumes are not counted as cells.";
   }
   spread(result.points, 3, rest.mesh->representative());
   if (rest.curved)
@@ -669,7 +669,7 @@ WarpResult WarpSession::warpFromPrevious(
   {
     step.take(data, this->settings.options.threads, this->settings.mergePoints);
   }
-  catch (const Error&) // tangled; the step goes the whole way from the mesh at rest
+  catch (const Error&) // tangled; the step covers the whole motion from the mesh at rest
   {
     note = PreviousInvalid;
   }
@@ -718,8 +718,8 @@ void followCorners(const RestingMesh& rest, const WarpTask& task, int threads,
   for (std::size_t i = 0; amount == 1.0 && i < nodes.points().size(); ++i)
   {
     const Index point = nodes.points()[i];
-    // Between corners that stay, nodes of the boundary stay; beside one that moves, nodes without a
-    // motion follow.
+    // Boundary nodes between fixed corners stay; beside a moving corner, nodes without a motion
+    // follow.
     const bool own = task.own.empty() || task.own[point] || !nodes.anyCorner(i, task.own);
     if (task.stay[point] || (nodes.boundary()[point] && own))
     {

@@ -174,7 +174,7 @@ tautline::WarpSettings vtkMeshWarp::GetSettings()
   tautline::WarpOptions& options = settings.options;
   settings.mergePoints = this->MergeCoincidentPoints;
   options.method = static_cast<tautline::WarpMethod>(this->Method);
-  // Tensors by region become tensors per cell.
+  // Converts tensors by region to tensors per cell.
   options.coefficients = settings.tensorsByRegion
     ? tautline::WarpCoefficients::PerCell
     : static_cast<tautline::WarpCoefficients>(this->Coefficients);
@@ -226,7 +226,7 @@ int vtkMeshWarp::RequestInformation(
   session.settings = this->GetSettings();
   session.ownTimes.assign(steps.begin(), steps.end());
   std::vector<double> times = session.ownTimes;
-  // Another process may have time steps; with a range, whatever it is, all execute at each of them.
+  // Another process may have time steps; with any range set, all processes execute at each of them.
   const bool unknown =
     times.empty() && session.overTime() && tautline::severalProcesses() != nullptr;
   for (int port = 0; unknown && port < NumberOfOutputPorts; ++port)
@@ -320,7 +320,7 @@ int vtkMeshWarp::RequestData(
       session.requireSameTimes();
       if (session.piecewise && !this->WorksOnPieces())
       {
-        session.beginGathered(); // of other kinds than at the first time step
+        session.beginGathered(); // different from the first time step
         return;
       }
       const auto moved =
@@ -331,7 +331,7 @@ int vtkMeshWarp::RequestData(
         {
           session.clear();
         }
-        tautline::TableRows unused; // tables of several processes would be joined
+        tautline::TableRows unused; // otherwise tables of several processes would be joined
         this->ForEachBlock(inputVector, outputVector, nullptr, FixedPort, false,
           [&](const tautline::InputBlock& block)
           {
@@ -352,7 +352,7 @@ int vtkMeshWarp::RequestData(
     return this->Fail(outputVector, failure);
   }
   session.begun = session.sequence() && !session.startsAgain;
-  // Time steps before the one requested, which the result needs: again, with the next of them.
+  // The result needs time steps before the requested one: repeats with the next of them.
   if (session.sequence() && (session.startsAgain || session.current < session.requested))
   {
     session.looping = true;

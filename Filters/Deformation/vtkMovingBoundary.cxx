@@ -23,12 +23,12 @@ vtkStandardNewMacro(vtkMovingBoundary);
 
 namespace
 {
-/// Of input; the first has the mesh.
+/// The number of input ports; the first has the mesh.
 constexpr int BoundaryPort = 1, MovedSelection = 2, FixedSelection = 3;
 
 using PointIds = std::vector<vtkIdType>;
 
-/// An edge or face of a cell: its points in their order, and how many cells have it.
+/// An edge or face of a cell: its points in order, and the number of cells that share it.
 struct Facet
 {
   PointIds points;
@@ -77,7 +77,7 @@ std::map<PointIds, Facet> facetsBetween(vtkDataSet* input, const tautline::Resti
   return facets;
 }
 
-/// Adds the part of a data set's boundary that moves.
+/// Adds the moving part of a data set's boundary.
 void addMoving(vtkDataSet* input, const tautline::RestingMesh& rest,
   const tautline::PointFlags& moving, vtkPolyData* output)
 {

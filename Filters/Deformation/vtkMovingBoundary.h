@@ -1,26 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkMovingBoundary
- * @brief Shows which part of a mesh's boundary vtkMeshWarp would move, without warping it.
+ * @brief Shows the part of a mesh's boundary that vtkMeshWarp would move, without warping the mesh.
  *
- * Takes the inputs and properties of vtkMeshWarp. What moves does not depend on the Amount, nor on
- * the transform, which may not have been chosen yet. Of a motion over time it is the whole
- * boundary.
+ * Has the inputs and properties of vtkMeshWarp. The moving part does not depend on the Amount or on
+ * the transform, which may not be chosen yet. For a motion over time it is the whole boundary.
  *
  * @par Output port 0:
- * A vtkPolyData at rest: the edges (planar meshes) or faces (volumes) of the boundary of which all
- * points move, and a vertex for each point that is in none of them. Of all blocks together. It is
- * empty where vtkMeshWarp would end with an error, for instance because no array has been chosen
- * yet: the summary has the message then, and no error is reported.
+ * A vtkPolyData at rest: the boundary edges (planar meshes) or faces (volumes) whose points all
+ * move, and a vertex for each moving point that is in none of them; over all blocks. It is empty if
+ * vtkMeshWarp would end with an error, for example because no array has been chosen yet: the
+ * summary then has the message, and no error is reported.
  *
  * The other outputs are empty tables.
  *
  * @par Several processes:
- * Unlike in vtkMeshWarp, the mesh is gathered on the first process, whose memory it has to fit
- * into, and which has the output. The preview is one surface with each point once, for blocks, too,
- * and its facets are those that one cell alone has in the whole mesh. The boundary that vtkMeshWarp
- * finds in pieces has flags of points, but no facets, and these would have to be made one surface
- * again. What a mesh that is put together cannot match without global ids leaves the output empty.
+ * Unlike in vtkMeshWarp, the mesh is gathered on the first process, which needs the memory for it
+ * and has the output. The preview is one surface with each point once, also for blocks, and its
+ * facets belong to exactly one cell of the whole mesh. The boundary that vtkMeshWarp finds in
+ * pieces consists of point flags without facets, which would have to be joined into one surface.
+ * The output is empty if the gathered mesh cannot be matched without global ids.
  *
  * @par Example:
  * @code

@@ -38,7 +38,7 @@ using tautline::Error;
 using tautline::Index;
 using tautline::operator+;
 
-/// A mesh of simplices, however it was made.
+/// A mesh of simplices from any source.
 struct Made
 {
   int dimension = 2; ///< of the points and the cells
@@ -75,7 +75,7 @@ Made makeWithSpacing(
   options.volume = 0.2 * spacing * spacing * spacing;
   options.progress = [&progress, calls = 0.0]() mutable
   {
-    // The time it takes is not known.
+    // The duration is not known in advance.
     constexpr double callsForHalf = 20.0;
     calls += 1.0;
     tautline::LoopProgress::at(calls / (calls + callsForHalf));
@@ -92,7 +92,8 @@ Made makeWithSpacing(
   return made;
 }
 
-/// Meshes a small number of cells to learn how many a spacing gives, then the number asked for.
+/// Meshes with few cells first, to find the number of cells for a spacing, then with the requested
+/// number.
 Made makeUnstructured(
   const DomainInfo& info, Index cells, const std::function<bool(Index)>& progress)
 {
@@ -131,8 +132,8 @@ Made makeUnstructured(
 Made makeUnstructured(const DomainInfo& info, Index, const std::function<bool(Index)>&)
 {
   throw Error(std::string("the domain '") + info.name +
-    "' needs a mesh generator, and this Tautline was built without them (TAUTLINE_MESHING=OFF); "
-    "the structured domains rectangle and square do not");
+    "' needs a mesh generator, but this Tautline was built without mesh generators "
+    "(TAUTLINE_MESHING=OFF); only the structured domains rectangle and square are available");
 }
 #endif
 

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkDomainSource
- * @brief The geometric domains of the dissertation, meshed with as many cells as asked for.
+ * @brief The geometric domains of the dissertation, meshed with a requested number of cells.
  *
  * The shapes follow the figures (tautline/Domains/Domains.h lists them with their numbers); the
- * dissertation gives no dimensions and its meshes are not published, so these are shapes of the
- * same kind, not the same meshes. Structured domains (rectangle, square) are exact and need
- * nothing; the others need the module Meshing, and say so when it was not built.
+ * dissertation gives no dimensions and its meshes are not published, so these are similar shapes,
+ * not the same meshes. Structured domains (rectangle, square) are exact and have no dependency; the
+ * others need the module Meshing and report an error if it was not built.
  *
  * Output 0, vtkUnstructuredGrid of triangles or tetrahedra. Point arrays:
  * - `BoundaryMarker`: 0 inside, 1 on the outer boundary, 2, 3, ... on holes and other parts;
- * - `Fixed`: 1 on the boundary, 0 inside, the usual choice of points an optimizer leaves alone;
- * - `Displacement`: 3 components, moving domains only: where boundary points go; 0 inside.
+ * - `Fixed`: 1 on the boundary, 0 inside, the usual choice of fixed points for an optimizer;
+ * - `Displacement`: 3 components, only for moving domains: the motion of boundary points; 0 inside.
  *
  * Cell array `Reference`, square only: 1 in the unit square, 2 in the interaction layer around it.
  *
@@ -20,9 +20,9 @@
  * cells).
  *
  * The number of cells is met within 5 % (usually 0.5 % in 2D, 2 % in 3D) by repeating the meshing
- * with a corrected size, as long as it is at least 3,000 (2D) or 20,000 (3D); fewer may be
- * impossible with the details of a shape. Structured domains take the nearest number their grid
- * allows. Deterministic: the same properties give the same mesh.
+ * with a corrected size, if it is at least 3,000 (2D) or 20,000 (3D); the details of a shape may
+ * make fewer cells impossible. Structured domains use the nearest number that their grid allows.
+ * The mesh is deterministic: the same properties give the same mesh.
  *
  * @sa vtkTriangleMesher vtkTetGenMesher tautline::domains
  */
@@ -44,21 +44,21 @@ public:
 
   ///@{
   /**
-   * Which domain, as an index into GetDomainName(). The default is 0, the wrench. Another number is
-   * an error, and the domain stays.
+   * The domain, as an index into GetDomainName(). The default is 0, the wrench. An invalid number
+   * is an error, and the domain does not change.
    */
   void SetDomain(int domain);
   vtkGetMacro(Domain, int);
   ///@}
 
   /**
-   * Which domain, by name. An unknown one is an error that lists the names.
+   * The domain, by name. An unknown name is an error that lists the names.
    */
   void SetDomainByName(const char* name);
 
   ///@{
   /**
-   * The domains there are.
+   * The available domains.
    */
   static int GetNumberOfDomains();
   static const char* GetDomainName(int domain);
@@ -71,8 +71,8 @@ public:
 
   ///@{
   /**
-   * Number of cells; 0 is that of the dissertation's example. The default is 0. The square is
-   * determined by ElementSize instead.
+   * Number of cells; 0 stands for the number in the dissertation's example. The default is 0. The
+   * square is determined by ElementSize instead.
    */
   vtkTautlineSetRangeMacro(NumberOfCells, vtkIdType, 0, 100000000);
   vtkGetMacro(NumberOfCells, vtkIdType);
@@ -80,7 +80,7 @@ public:
 
   ///@{
   /**
-   * How much of its motion a moving boundary makes; negative is the other way. The default is 1.
+   * The fraction of the motion of a moving boundary; negative values reverse it. The default is 1.
    */
   vtkTautlineSetRangeMacro(Amount, double, -10.0, 10.0);
   vtkGetMacro(Amount, double);
@@ -112,8 +112,8 @@ public:
 
   ///@{
   /**
-   * Seconds for an execution, at least 0; 0 is no limit. After it the execution ends with an error.
-   * The default is 600.
+   * Time limit of an execution in seconds, at least 0; 0 means no limit. After it the execution
+   * ends with an error. The default is 600.
    */
   vtkTautlineSetRangeMacro(TimeLimit, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(TimeLimit, double);

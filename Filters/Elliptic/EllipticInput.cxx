@@ -26,7 +26,8 @@ constexpr int FullTensorSize = 9;
 /// Components of a full tensor, row by row, in the order of SymmetricTensor.
 constexpr std::array<int, TensorSize> OfFullTensor = { 0, 4, 8, 1, 5, 2 };
 
-/// A chosen cell array, or null; Error if it is on points or has other numbers of components.
+/// A chosen cell array, or null; throws Error if it is a point array or has the wrong number of
+/// components.
 vtkDataArray* cellArray(vtkAlgorithm* algorithm, int index, vtkDataSet* data,
   const std::string& purpose, const std::vector<int>& components)
 {
@@ -46,7 +47,7 @@ vtkDataArray* cellArray(vtkAlgorithm* algorithm, int index, vtkDataSet* data,
   return array;
 }
 
-/// Throws Error where a part of the mesh has no consistent order, see MeshAdapter::orient().
+/// Throws Error if a part of the mesh has no consistent order, see MeshAdapter::orient().
 void requireOrder(RankOrder& order, Dimension dimension)
 {
   if (order.order.ambiguous > 0)
@@ -57,8 +58,8 @@ void requireOrder(RankOrder& order, Dimension dimension)
   }
 }
 
-/// Lists the nodes between the corners of a quadratic triangle or tetrahedron in the order that its
-/// corners have after reverseCell(). Other curved cells are refused later.
+/// Lists the nodes between the corners of a quadratic triangle or tetrahedron in the order of its
+/// corners after reverseCell(). Other curved cells are rejected later.
 void reverseMiddles(CellType type, Index* nodes, Index size)
 {
   constexpr Index triangle = 6, withCenter = 7, tetrahedron = 10;
@@ -73,7 +74,7 @@ void reverseMiddles(CellType type, Index* nodes, Index size)
   }
 }
 
-/// The values, or null if there are none; not null only because this process has no points.
+/// The values, or null if there are none; not null merely because this process has no points.
 const double* orNull(std::vector<double>& values, bool given)
 {
   values.reserve(1);
@@ -90,7 +91,7 @@ EllipticInput::EllipticInput(LocalMesh& mesh, const EllipticChoice& choice, vtkA
   this->Skip = cellsBesideElements(*this->Adapter);
   requireDistinctCells(this->Adapter->mesh(), this->Skip.empty() ? nullptr : this->Skip.data());
   MeshRemarks remarks = this->Adapter->remarks();
-  remarks.higherOrderCells = 0; // these are refused, or all their nodes count
+  remarks.higherOrderCells = 0; // these are rejected, or all their nodes count
   const std::string more = describe(remarks);
   this->Notice = mesh.notice + (mesh.notice.empty() || more.empty() ? "" : " ") + more;
   this->Problem.pde = choice.pde;
@@ -142,16 +143,16 @@ void EllipticInput::assemble(RankGroup& processes, int threads)
   }
   catch (const Error&) // on all processes
   {
-    // The message is to have the numbers of cells and points in the pieces.
+    // The message uses the numbers of cells and points in the pieces.
     requireSolvable(this->piece(), this->Problem, this->Part, threads);
     processes.agree();
     throw;
   }
-  this->Values = Arrays(); // what Problem has of the pieces is not read any more
+  this->Values = Arrays(); // the data of the pieces in Problem are no longer read
 }
 
 //------------------------------------------------------------------------------
-/// Divides the mesh and what the problem has of it among the processes.
+/// Divides the mesh and the data of the problem among the processes.
 void EllipticInput::divide(Redistribution how, int threads)
 {
   RankGroup& group = *this->Group;
@@ -172,7 +173,7 @@ void EllipticInput::divide(Redistribution how, int threads)
           owners = ownersByGraph(group, { view, ids, this->skipped() }, how, why);
         });
     }
-    catch (const Error& error) // on all processes: copies of cells or ids that a solver takes
+    catch (const Error& error) // on all processes: copies of cells or ids, which a solver accepts
     {
       how = Redistribution::KdTree;
       why = std::string(" ") + error.what();
@@ -308,7 +309,7 @@ void EllipticInput::settleOrientation(RankGroup& processes, int threads)
   text = processes.size() > 1 ? "" : this->Adapter->orient();
   if (processes.size() > 1)
   {
-    // As a part of the whole mesh: its plane, and the order of its cells.
+    // Sets the plane and the order of its cells, as part of the whole mesh.
     this->Group = makeProcessGroup();
     RankPiece part = { &this->piece(), this->skipped(), this->Local.globalIds.data() };
     const MeshSpace whole = spaceOf(*this->Group, { part });
@@ -362,13 +363,13 @@ void EllipticInput::settleDimension(const EllipticChoice& choice, RankGroup& pro
     [](const CellBlock& block) { return topology(block.type).dimension == 3; });
   if (highest == Dimension::Volume && !solid)
   {
-    // Here there are only faces of volumes on other processes.
+    // This process has only faces of volumes on other processes.
     this->Skip.assign(static_cast<std::size_t>(mesh.view().numberOfCells), 1);
   }
   if (highest == Dimension::Surface && choice.pde == Pde::Elasticity)
   {
     throw Error(
-      "The mesh is a surface in space; linear elasticity is for planar meshes and volumes.");
+      "The mesh is a surface in space; linear elasticity requires a planar mesh or a volume.");
   }
 }
 
@@ -398,7 +399,7 @@ void EllipticInput::markFixed(
   }
   if (processes.everywhere(!any))
   {
-    return; // the whole boundary, which the system finds by itself
+    return; // the whole boundary, which the system itself finds
   }
   this->Values.fixed = std::move(chosen);
   if (choice.fixedPart != EllipticChoice::OnlyChosen)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file EllipticOutput.h
- * @brief Solutions, stresses and tables of linear systems as VTK arrays.
+ * @brief Writes solutions, stresses and tables of linear systems as VTK arrays.
  */
 #ifndef tautline_EllipticOutput_h
 #define tautline_EllipticOutput_h
@@ -17,9 +17,9 @@ namespace tautline
 class TableRows;
 
 /**
- * @brief Adds an array to the points or cells, made the active one. Values that are not finite, as
- * those of points outside all elements, become 0.
- * @return how many tuples these were
+ * @brief Adds an array to the points or cells and makes it active. Values that are not finite, as
+ * at points outside all elements, become 0.
+ * @return the number of such tuples
  */
 Index addArray(vtkDataSet* output, bool ofCells, const std::string& name,
   const std::vector<double>& values, int components);

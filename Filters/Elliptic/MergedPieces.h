@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MergedPieces.h
- * @brief Partitions of a mesh put together, and results handed back to them. Internal.
+ * @brief Joins partitions of a mesh and returns results to them. Internal.
  */
 #ifndef tautline_MergedPieces_h
 #define tautline_MergedPieces_h
@@ -27,7 +27,7 @@
 
 namespace tautline
 {
-/// A partition as the pipeline has it.
+/// A partition in the pipeline.
 struct Piece
 {
   vtkDataSet* input;
@@ -35,7 +35,7 @@ struct Piece
   vtkDataSet* output;
 };
 
-/// Several pieces put together, each global point once.
+/// Several pieces joined, with each global point once.
 class Merged
 {
 public:
@@ -70,7 +70,7 @@ public:
   vtkSmartPointer<vtkUnstructuredGrid> Input, Selected;
   std::vector<Index> GlobalIds;
 
-  /// Hands what is new in the result to the outputs of the pieces.
+  /// Copies new arrays of the result to the outputs of the pieces.
   void scatter(vtkDataSet* result, const std::vector<Piece>& pieces) const
   {
     vtkIdType firstPoint = 0, firstCell = 0;
@@ -121,7 +121,7 @@ private:
       {
         ids->SetId(k, this->PointOf[ids->GetId(k)]);
       }
-      // Polyhedra, which no method here takes, would need their faces.
+      // Polyhedra, which no method here supports, would need their faces.
       const int type = all->GetCellType(cell);
       merged->InsertNextCell(type == VTK_POLYHEDRON ? VTK_CONVEX_POINT_SET : type, ids);
     }
@@ -130,7 +130,7 @@ private:
     return merged;
   }
 
-  /// The ghosts of all pieces, though not all may have some.
+  /// Joins the ghost flags of all pieces, some of which may have none.
   static void markGhosts(const std::vector<vtkDataSet*>& pieces, vtkDataSet* merged)
   {
     vtkNew<vtkUnsignedCharArray> ghosts;

@@ -40,7 +40,7 @@ struct Group
 };
 
 //------------------------------------------------------------------------------
-/// Walks through a data object; outputs are made and put into the output's structure.
+/// Traverses a data object; outputs are created and put into the output's structure.
 class Collector
 {
 public:
@@ -154,8 +154,7 @@ private:
 };
 
 //------------------------------------------------------------------------------
-/// Removes from the flagged points those inside of a mesh without ghosts, which no other piece can
-/// have.
+/// Clears the flags of interior points of a mesh without ghosts, which no other piece can have.
 void dropInside(vtkDataSet* input, std::vector<char>& flags)
 {
   const MeshAdapter adapter(input);
@@ -174,7 +173,7 @@ void dropInside(vtkDataSet* input, std::vector<char>& flags)
   }
 }
 
-/// The place of a piece and a number of it.
+/// The position of a piece and a number of it.
 struct Box
 {
   int rank, number;
@@ -210,7 +209,7 @@ std::vector<Box> boxesOf(
 std::vector<std::vector<char>> sharedPoints(
   const std::vector<Piece>& pieces, bool ghosts, RankGroup& processes)
 {
-  constexpr double few = 0.1; // of the points: then finding those inside costs more than it saves
+  constexpr double few = 0.1; // fraction of the points that is not worth a search
   std::vector<std::size_t> numbers(pieces.size());
   std::iota(numbers.begin(), numbers.end(), std::size_t(0));
   const std::vector<Box> boxes = boxesOf(pieces, numbers, processes);
@@ -275,8 +274,8 @@ std::vector<std::vector<Index>> generateIds(const std::vector<Piece>& pieces, Ra
       privates += !shared[i][k];
     }
   }
-  // Shared points first, in the order of their coordinates; then those of one process after the
-  // other.
+  // Shared points come first, in the order of their coordinates; then the other points, process by
+  // process.
   coordinates = processes.gatherJoined(coordinates);
   std::vector<Vec3> places;
   for (std::size_t k = 0; k + 2 < coordinates.size(); k += 3)
@@ -305,7 +304,7 @@ std::vector<std::vector<Index>> generateIds(const std::vector<Piece>& pieces, Ra
 }
 
 //------------------------------------------------------------------------------
-/// How many ids are those of another point.
+/// The number of ids that another point also has.
 Index repetitions(std::vector<Index> ids)
 {
   std::sort(ids.begin(), ids.end());
@@ -314,7 +313,7 @@ Index repetitions(std::vector<Index> ids)
 
 /**
  * @brief Global point ids of each piece, from the input or by coordinates. Collective.
- * @param mergePoints whether points of one piece may have the same id, by coordinates: they are one
+ * @param mergePoints whether points of one piece may share an id by coordinates: they are merged
  */
 std::vector<std::vector<Index>> globalIdsOf(
   const std::vector<Piece>& pieces, bool mergePoints, RankGroup& processes)
@@ -345,9 +344,8 @@ std::vector<std::vector<Index>> globalIdsOf(
     if (apart || negative)
     {
       throw Error(std::to_string(repeated) +
-        " points are at the place of another one, or have its global id, and cannot be "
-        "distinguished from points of other parts: run Clean to Grid first, or solve in one "
-        "process.");
+        " points coincide with another one, or have its global id, and cannot be distinguished "
+        "from points of other parts: run Clean to Grid first, or solve in one process.");
     }
   }
   return ids;
@@ -404,8 +402,8 @@ void visitGroup(const Group& group, LocalMesh& mesh, bool mergePoints, RankGroup
 }
 
 //------------------------------------------------------------------------------
-/// For each group the first of those that seams connect with it, or its own number, of the pieces
-/// on this process alone.
+/// For each group, the first group that seams connect with it, or its own number, among the pieces
+/// of this process.
 std::vector<std::size_t> connectedHere(const std::vector<Group>& groups)
 {
   std::vector<vtkDataSet*> data;
@@ -430,7 +428,7 @@ std::vector<std::size_t> connectedHere(const std::vector<Group>& groups)
   return to;
 }
 
-/// The same of the pieces on all processes. Collective.
+/// The same for the pieces on all processes. Collective.
 std::vector<std::size_t> connectedOnAll(const std::vector<Group>& groups, RankGroup& processes)
 {
   std::vector<Piece> all;
@@ -471,7 +469,7 @@ std::vector<std::size_t> connectedOnAll(const std::vector<Group>& groups, RankGr
   return { found.begin(), found.end() };
 }
 
-/// Makes one of the groups with seams between them. Collective.
+/// Joins groups with seams between them. Collective.
 void joinGroups(std::vector<Group>& groups, RankGroup& processes)
 {
   if (groups.size() < 2)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MeshParts.h
- * @brief The meshes in a data object, each as this process has it: with its ghost cells, its global
- * point ids, and its partitions put together.
+ * @brief The meshes in a data object on this process, each with its ghost cells, its global point
+ * ids, and its partitions joined.
  */
 #ifndef tautline_MeshParts_h
 #define tautline_MeshParts_h
@@ -20,12 +20,12 @@ class vtkDataSet;
 
 namespace tautline
 {
-/// A mesh to solve on, or this process' part of it, which may be empty.
+/// A mesh to solve on, or this process's part of it, which may be empty.
 struct LocalMesh
 {
-  std::string name;                     ///< "block 3", or "" if there is one mesh only
-  int number = 0;                       ///< counts through the meshes
-  int meshes = 1;                       ///< how many there are
+  std::string name;                     ///< "block 3", or "" if there is only one mesh
+  int number = 0;                       ///< index among the meshes
+  int meshes = 1;                       ///< number of meshes
   vtkSmartPointer<vtkDataSet> input;    ///< never null
   vtkSmartPointer<vtkDataSet> selected; ///< the same with the marks of markSelected(), or null
   vtkSmartPointer<vtkDataSet> output;   ///< a shallow copy of the input, gets the results
@@ -34,21 +34,21 @@ struct LocalMesh
 };
 
 /**
- * @brief Calls visit for each mesh with a cell on any process; the others are passed on as they
- * are. Collective.
+ * @brief Calls visit for each mesh with a cell on any process; other meshes are passed on
+ * unchanged. Collective.
  *
  * A data set is a mesh, and so is each block of a multiblock data set. The partitions of a
  * partitioned or multipiece data set are one mesh, on all processes together. Points on several
- * processes or partitions are identified by the global point ids of the input, or else by equal
- * coordinates. Throws Error if points of one partition cannot be distinguished: with mergePoints,
- * if they have one global id but two places.
+ * processes or partitions are identified by the global point ids of the input, or otherwise by
+ * equal coordinates. Throws Error if points of one partition cannot be distinguished: with
+ * mergePoints, if they share a global id but not the position.
  *
- * With mergePoints, coincident points of a data set are one as findCoincidentPoints() has it, if
- * they have one global id, and on several processes without ids if another piece is there; and
- * blocks with a seam between them are one mesh, whichever process has them. Points that are one
- * have the arrays of the first of them.
+ * With mergePoints, coincident points of a data set are merged according to findCoincidentPoints(),
+ * if they share a global id, and, on several processes without ids, if another piece is at the same
+ * position; and blocks with a seam between them are one mesh, on any process. Merged points have
+ * the array values of the first of them.
  *
- * @param selected what markSelected() returned
+ * @param selected the result of markSelected()
  * @param output of the class of the input; gets its structure
  */
 void forEachMesh(vtkDataObject* input, vtkDataObject* selected, vtkDataObject* output,

@@ -35,7 +35,7 @@ std::string placeOf(vtkDataSet* data, vtkIdType point)
   return text.str();
 }
 
-/// A variable of the parser and where its value at a point comes from.
+/// A variable of the parser and the source of its value at a point.
 struct Variable
 {
   int index;
@@ -73,7 +73,7 @@ public:
     {
       vtkDataArray* array = arrays->GetArray(a);
       const std::string name = array && array->GetName() ? array->GetName() : "";
-      // Only arrays whose name occurs can be meant; coordinates go first.
+      // Only arrays whose name occurs are relevant; coordinates come first.
       if (name.empty() || expression.find(name) == std::string::npos ||
         std::find(CoordinateNames.begin(), CoordinateNames.end(), name) != CoordinateNames.end())
       {
@@ -93,10 +93,10 @@ public:
         this->addVector(name, array);
       }
     }
-    this->Message.clear(); // of names that cannot be variables
+    this->Message.clear(); // from names that cannot be variables
   }
 
-  /// Sets the variables to those of a point; only those that are needed after the first point.
+  /// Sets the variables to the values at a point; after the first point, only the variables needed.
   void moveTo(vtkIdType point)
   {
     for (const Variable& scalar : this->Scalars)
@@ -147,8 +147,8 @@ private:
   std::vector<vtkDataArray*> Vectors;
 };
 
-/// What is wrong, from the parser's "... Msg: ERR201 - Undefined symbol: 'q'<tab>Expression: ..."
-/// or another message.
+/// Extracts the problem from the parser's "... Msg: ERR201 - Undefined symbol: 'q'<tab>Expression:
+/// ..." or another message.
 std::string plain(std::string message)
 {
   const auto after = [&message](const std::string& mark)
@@ -176,7 +176,7 @@ public:
   {
   }
 
-  /// Writes NaN, instead of an error, where the value is not finite.
+  /// Writes NaN instead of throwing an error if the value is not finite.
   void allowInvalid()
   {
     this->Values.Parser->SetReplaceInvalidValues(true);
@@ -193,7 +193,7 @@ public:
       this->Values.Message.empty())
     {
       throw Error(this->Subject +
-        (scalar ? " is a vector; a number is expected: take a component of it."
+        (scalar ? " is a vector; a number is expected: use a component of it."
                 : " is a number; a vector is expected: write (" + this->Text +
               ")*iHat + 0*jHat, for example."));
     }
@@ -232,7 +232,7 @@ private:
   bool Known = false; ///< whether the result has the components
 };
 
-/// The expression at any place, which is the one point of a data set.
+/// The expression at any position, using a data set with a single point.
 class ExpressionAtPlace
 {
 public:

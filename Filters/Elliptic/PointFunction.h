@@ -19,7 +19,7 @@ namespace tautline
 {
 struct PointFunction
 {
-  /// The numbers are stable: ParaView state files hold them.
+  /// The values must not change: ParaView state files contain them.
   enum Kinds
   {
     Constant = 0,
@@ -32,32 +32,32 @@ struct PointFunction
   int arrayIndex = 0; ///< of SetInputArrayToProcess
   std::string expression;
 
-  /// Whether values that are not finite are an error here; else they are passed on.
+  /// Whether values that are not finite are an error; otherwise they are passed on.
   bool finite = true;
 
   bool isZero() const { return this->kind == Constant && this->constant == Vec3{ 0, 0, 0 }; }
 };
 
 /**
- * @brief The values at all points, `components` (1 or 3) each; of vectors with two components the
- * third is 0. Throws Error for an array that is missing, of cells or of other components.
+ * @brief The values at all points, `components` (1 or 3) each; the third component of two-component
+ * vectors is 0. Throws Error if the array is missing, is a cell array or has other components.
  */
 std::vector<double> valuesAt(
   const PointFunction& function, vtkAlgorithm* algorithm, vtkDataSet* data, int components);
 
 /**
  * @brief The values of an expression of x, y, z, of the point arrays by name (vectors also by
- * component: v_X, v_Y, v_Z) and, for vectors, of iHat, jHat, kHat; names with other characters than
- * letters, digits and _ go in double quotes. Throws Error that quotes the expression if it is
- * empty, not understood, not of so many components or, unless that is allowed, not finite
- * somewhere; else NaN stands there.
+ * component: v_X, v_Y, v_Z) and, for vectors, of iHat, jHat, kHat; names with characters other than
+ * letters, digits and _ must be in double quotes. Throws Error, quoting the expression, if it is
+ * empty, cannot be parsed, or has a wrong number of components, and if a value is not finite,
+ * unless that is allowed; the value is then NaN.
  */
 std::vector<double> evaluate(const std::string& expression, const std::string& what,
   vtkDataSet* data, int components, bool finite = true);
 
 /**
  * @class tautline::PlaceFunction
- * @brief An expression of x, y, z as a function of any place. Throws Error as evaluate().
+ * @brief An expression of x, y, z as a function of position. Throws Error as evaluate() does.
  */
 class PlaceFunction
 {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SeamlessPieces.h
- * @brief Partitions of a mesh with their coincident points as one. Internal.
+ * @brief Partitions of a mesh with coincident points merged. Internal.
  */
 #ifndef tautline_SeamlessPieces_h
 #define tautline_SeamlessPieces_h
@@ -20,7 +20,7 @@
 
 namespace tautline
 {
-/// A sentence on point arrays that differ between points that are one, or "".
+/// A sentence on point arrays that differ between merged points, or "".
 inline std::string differingArrays(vtkDataSet* input, const std::vector<Index>& representative)
 {
   std::string names;
@@ -43,10 +43,10 @@ inline std::string differingArrays(vtkDataSet* input, const std::vector<Index>& 
   return names.empty() ? ""
                        : "Their values differ in the point array" +
       std::string(names.find(',') == std::string::npos ? " " : "s ") + names +
-      ": those of the point with the smallest id are taken.";
+      ": the values of the point with the smallest id are used.";
 }
 
-/// Whether a cell has two points with one number: it would collapse if they were one.
+/// Whether a cell has two points with one number, so that it would collapse if they were merged.
 inline bool anyCollapse(vtkDataSet* input, const std::vector<Index>& numbers)
 {
   vtkNew<vtkIdList> points;
@@ -69,11 +69,11 @@ inline bool anyCollapse(vtkDataSet* input, const std::vector<Index>& numbers)
 }
 
 /**
- * @brief Makes points with the same given id at the same place one, also where no facet joins them.
+ * @brief Merges points with the same id and position, even if no facet joins them.
  * @param ids one per point, or none
- * @param view its points are where joinCopies() has them
- * @param representative of each point; empty if no two are one
- * @return how many more are one with another
+ * @param view with the points at their positions after joinCopies()
+ * @param representative of each point; empty if no points are merged
+ * @return the number of additional merged points
  */
 inline Index joinSameIds(
   const std::vector<Index>& ids, const MeshView& view, std::vector<Index>& representative)
@@ -106,19 +106,17 @@ inline Index joinSameIds(
   return joined;
 }
 
-/// A sentence on points that are one though no facet joins them, or "".
+/// A sentence on merged points that no facet joins, or "".
 inline std::string describeUnited(Index points)
 {
   return points == 0 ? ""
                      : std::to_string(points) +
       (points == 1
-          ? " point that only a corner joins with another one at its place was treated as one with "
-            "it."
-          : " points that only corners join with others at their places were treated as one with "
-            "them.");
+          ? " point that shares only a corner with a coincident one was treated as one with it."
+          : " points that share only corners with coincident ones were treated as one with them.");
 }
 
-/// The pieces with their coincident points as one, and the way back.
+/// The pieces with their coincident points merged, and the mapping back.
 class Seamless
 {
 public:
@@ -146,7 +144,7 @@ public:
       const Index united = joinSameIds(ids, adapter.mesh().view(), found.representative);
       if (united > 0 && anyCollapse(input, found.representative))
       {
-        throw Error("A cell has two points with the same global id at one place: run Clean to Grid "
+        throw Error("A cell has two coincident points with the same global id: run Clean to Grid "
                     "first, or Generate Global Ids again.");
       }
       this->add(describeUnited(united));
@@ -163,7 +161,7 @@ public:
     }
   }
 
-  /// Hands what is new in the outputs of the pieces to those that were given.
+  /// Copies new arrays from the outputs of the pieces to the given outputs.
   void scatter() const
   {
     for (std::size_t i = 0; i < this->Made.size(); ++i)

@@ -36,8 +36,8 @@ namespace tautline
 namespace
 {
 constexpr int Axes = 3;
-constexpr int Slabs = 64;          // in which the extent along an axis is divided
-constexpr double LargeShare = 0.9; // sections with this share of the largest area are large, too
+constexpr int Slabs = 64;          // into which the extent along an axis is divided
+constexpr double LargeShare = 0.9; // sections with this fraction of the largest area are also large
 
 bool isVolume(int cellType)
 {
@@ -91,7 +91,7 @@ std::vector<vtkDataSet*> volumesOf(vtkDataObject* mesh)
   return volumes;
 }
 
-/// Of the bounds on all processes; valid if any has points.
+/// The bounds on all processes; valid if any has points.
 vtkBoundingBox boundsOf(const std::vector<vtkDataSet*>& volumes, RankGroup& processes)
 {
   vtkBoundingBox own;
@@ -115,8 +115,8 @@ vtkBoundingBox boundsOf(const std::vector<vtkDataSet*>& volumes, RankGroup& proc
 }
 
 /**
- * The area of the sections of slabs of the bounds, for each axis. The volume of a tetrahedron
- * counts evenly over its extent.
+ * The section areas of slabs of the bounds, for each axis. The volume of a tetrahedron is spread
+ * evenly over its extent.
  */
 class SectionAreas
 {
@@ -154,7 +154,7 @@ public:
     }
   }
 
-  /// Those of all processes. Collective.
+  /// The areas on all processes. Collective.
   void sum(RankGroup& processes)
   {
     const std::vector<double> all = processes.gatherJoined(this->Areas);

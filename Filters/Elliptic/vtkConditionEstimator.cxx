@@ -24,7 +24,7 @@ namespace
 {
 constexpr int SpectrumPort = 1;
 constexpr int ListedElements = 5;
-constexpr double NamedFraction = 0.9; ///< of the eigenvalue: how few elements have it is reported
+constexpr double NamedFraction = 0.9; ///< fraction of the eigenvalue in the report
 constexpr int Digits = 4;             ///< of numbers in sentences
 constexpr double Unknown = -1.0;      ///< an error bound
 
@@ -53,7 +53,8 @@ struct Contribution
   static constexpr std::size_t Size = 7;
 };
 
-/// Those with the largest shares on all processes; without shares, with the largest eigenvalues.
+/// The elements with the largest shares on all processes; without shares, with the largest
+/// eigenvalues.
 std::vector<Contribution> largest(const tautline::ElementContributions& elements,
   const tautline::Mesh& mesh, tautline::RankGroup& processes)
 {
@@ -90,7 +91,7 @@ std::vector<Contribution> largest(const tautline::ElementContributions& elements
   }
   std::stable_sort(all.begin(), all.end(),
     [](const Contribution& a, const Contribution& b) { return a.share > b.share; });
-  // Not resize(), about which GCC 16 has a warning that is wrong.
+  // Not resize(), for which GCC 16 gives a false warning.
   all.erase(all.begin() + std::min<std::ptrdiff_t>(all.size(), ListedElements), all.end());
   return all;
 }
@@ -105,8 +106,8 @@ std::vector<double> ofOwn(std::vector<double> values, const unsigned char* skip)
   return values;
 }
 
-/// log10 of each positive value over the geometric mean of those that count on all processes; NaN
-/// for others.
+/// log10 of each positive value over the geometric mean of all counted values on all processes; NaN
+/// for other values.
 std::vector<double> excess(
   const std::vector<double>& values, const std::vector<double>& own, tautline::RankGroup& processes)
 {
@@ -145,7 +146,7 @@ std::array<tautline::Index, 2> concentration(
     sum = processes.sum(sum);
     return processes.sum(count);
   };
-  // The highest threshold above which the shares add up to that fraction, by bisection.
+  // The highest threshold above which the shares add up to this fraction, by bisection.
   constexpr int steps = 50;
   double low = 0.0, high = 1.0, sum = 0.0;
   const tautline::Index all = above(low, sum);
@@ -252,7 +253,7 @@ void vtkConditionEstimator::Compute(const tautline::EllipticInput& input, tautli
   limits.cancelled = this->Cancelled();
   tautline::ElementContributions elements =
     tautline::elementContributions(system, this->ComputeShares, this->Threads, limits);
-  // A process without elements has none; all go the same way.
+  // A process without elements has none; all processes take the same branch.
   const bool shares = processes.maximum(static_cast<tautline::Index>(elements.share.size())) > 0;
   elements.largestEigenvalue = input.cellsOfPiece(elements.largestEigenvalue);
   if (shares)
@@ -268,7 +269,8 @@ void vtkConditionEstimator::Compute(const tautline::EllipticInput& input, tautli
   text.precision(Digits);
   text << found << "\n"
        << system.unknowns() << " unknowns. The largest eigenvalue of A is between "
-       << elements.lowerBound << " and " << elements.bound << " by those of the elements.";
+       << elements.lowerBound << " and " << elements.bound
+       << " by the eigenvalues of the elements.";
   if (shares)
   {
     tautline::addArray(mesh.output, true, "Share", elements.share, 1);
@@ -279,7 +281,7 @@ void vtkConditionEstimator::Compute(const tautline::EllipticInput& input, tautli
   }
   else if (this->ComputeShares)
   {
-    text << "\nThe shares of the elements are missing: the time limit was reached before.";
+    text << "\nThe shares of the elements are missing because the time limit was reached.";
     this->Warn();
   }
   tautline::addArray(mesh.output, true, "Excess",

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkConditionEstimator
- * @brief Condition number of the linear system of an elliptic problem on a mesh, and which elements
- * cause it.
+ * @brief Estimates the condition number of the linear system of an elliptic problem on a mesh, and
+ * finds the elements that cause it.
  *
- * The problem and the inputs are those of vtkEllipticAlgorithm. The extreme eigenvalues of the
- * matrix A of the free unknowns and, unless Preconditioner is NONE, of P^-1 A are found: a Krylov
- * method needs the more iterations the larger the condition number of P^-1 A is.
+ * See vtkEllipticAlgorithm for the problem and the inputs. The filter finds the extreme eigenvalues
+ * of the matrix A of the free unknowns and, unless Preconditioner is NONE, of P^-1 A: the larger
+ * the condition number of P^-1 A, the more iterations a Krylov method needs.
  *
  * @par Output port 0 `Mesh`:
- * The input with the cell arrays `LargestEigenvalue`, of the stiffness matrix of each element;
- * `Excess`, its log10 over the geometric mean of all elements (1: ten times); and, if ComputeShares
- * is on, `Share`: the fraction of the largest eigenvalue of A that is due to the element, which is
- * x_e^T A_e x_e of its eigenvector x over the sum of all elements. Shares add up to 1; often a few
- * elements have most of it. It is missing where the time limit was reached before. All are 0 for
- * cells that are not solved on.
+ * The input with the cell arrays `LargestEigenvalue` of the stiffness matrix of each element;
+ * `Excess`, the log10 of its ratio to the geometric mean of all elements (1: ten times); and, if
+ * ComputeShares is on, `Share`: the fraction of the largest eigenvalue of A that is due to the
+ * element, x_e^T A_e x_e of the eigenvector x over the sum of all elements. Shares add up to 1;
+ * often a few elements have most of it. `Share` is missing if the time limit was reached. All
+ * arrays are 0 for cells that do not take part in the solution.
  *
  * @par Output port 1 `Spectrum`:
  * A vtkTable with a row for A and one for P^-1 A (per block): `Matrix`, `Smallest`, `Largest`,
@@ -38,7 +38,7 @@ public:
   vtkTypeMacro(vtkConditionEstimator, vtkEllipticAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /// Numbers of the methods; those of tautline::SpectrumMethod.
+  /// The methods; values as in tautline::SpectrumMethod.
   enum Methods
   {
     AUTOMATIC = 0,
@@ -46,43 +46,43 @@ public:
     ACCURATE = 2
   };
   ///@{
-  /// RITZ_VALUES of a Krylov method: cheap, without error bounds. ACCURATE: to Tolerance.
+  /// RITZ_VALUES: from a Krylov method; fast, without error bounds. ACCURATE: to Tolerance.
   /// AUTOMATIC, the default, is ACCURATE.
   vtkTautlineSetRangeMacro(Method, int, AUTOMATIC, ACCURATE);
   vtkGetMacro(Method, int);
   ///@}
 
   ///@{
-  /// P, see vtkEllipticSolver::Preconditioners. The default is BoomerAMG (3); 6, none, leaves P^-1
-  /// A out.
+  /// The preconditioner P, see vtkEllipticSolver::Preconditioners. The default is BoomerAMG (3);
+  /// with 6 (none), P^-1 A is left out.
   vtkTautlineSetRangeMacro(Preconditioner, int, 0, 6);
   vtkGetMacro(Preconditioner, int);
   ///@}
 
   ///@{
-  /// Tolerance: relative error of the eigenvalues, above 0 and below 1. The default is 1e-6.
+  /// The relative tolerance of the eigenvalues, above 0 and below 1. The default is 1e-6.
   vtkSetMacro(Tolerance, double);
   vtkGetMacro(Tolerance, double);
   ///@}
 
   ///@{
-  /// At least 1. The default is 10000.
+  /// The maximum number of iterations, at least 1. The default is 10000.
   vtkSetMacro(MaximumIterations, int);
   vtkGetMacro(MaximumIterations, int);
   ///@}
 
   ///@{
-  /// Whether to find the share of each element. On.
+  /// Whether to find the share of each element. The default is on.
   vtkSetMacro(ComputeShares, bool);
   vtkGetMacro(ComputeShares, bool);
   vtkBooleanMacro(ComputeShares, bool);
   ///@}
 
-  /// The output other than the mesh.
+  /// The table of output port 1, Spectrum.
   vtkTable* GetSpectrum();
 
   ///@{
-  /// Condition numbers of A and of P^-1 A of the last execution (of blocks, the largest); 0: not
+  /// Condition numbers of A and of P^-1 A in the last execution (for blocks, the largest); 0: not
   /// known.
   double GetCondition() const { return this->Condition; }
   double GetPreconditionedCondition() const { return this->PreconditionedCondition; }

@@ -35,7 +35,7 @@ enum Arrays
   StiffnessArray = 4
 };
 
-constexpr double AssemblyShare = 0.25; // of the progress on a mesh
+constexpr double AssemblyShare = 0.25; // fraction of the progress on a mesh
 }
 
 //------------------------------------------------------------------------------
@@ -48,7 +48,7 @@ vtkEllipticAlgorithm::vtkEllipticAlgorithm()
 vtkEllipticAlgorithm::~vtkEllipticAlgorithm() = default;
 
 //------------------------------------------------------------------------------
-/// A system and the mesh it was assembled on, without the output of that execution.
+/// A system and the mesh on which it was assembled, without the output of that execution.
 struct vtkEllipticAlgorithm::KeptSystem
 {
   KeptSystem(const tautline::LocalMesh& mesh, const tautline::EllipticChoice& choice,
@@ -104,7 +104,7 @@ tautline::EllipticChoice vtkEllipticAlgorithm::GetChoice() const
   choice.given = { "given solution", this->GivenType,
     elastic ? vector(this->GivenDisplacement) : tautline::Vec3{ this->GivenValue, 0, 0 },
     GivenArray, this->GivenExpression };
-  choice.given.finite = false; // only the values of fixed points count, which the system checks
+  choice.given.finite = false; // only the values at fixed points count, which the system checks
   choice.fixedPart = this->FixedPart;
   choice.fixedWhere = this->FixedWhere;
   choice.fixedArray = FixedArray;
@@ -155,7 +155,7 @@ int vtkEllipticAlgorithm::RequestData(
               this->Describe(mesh, problem.notice());
               if (!this->KeepsSystems())
               {
-                this->Systems[mesh.number].reset(); // its memory, before the next one's
+                this->Systems[mesh.number].reset(); // frees its memory before the next one
               }
             });
           if (processes.rank() == 0)

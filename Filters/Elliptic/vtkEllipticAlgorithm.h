@@ -1,32 +1,33 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkEllipticAlgorithm
- * @brief Base class of the filters for elliptic partial differential equations: the boundary value
- * problem.
+ * @brief Base class of filters for elliptic partial differential equations; defines the boundary
+ * value problem.
  *
  * Abstract. The boundary value problem of dissertation section 2.2, discretized by finite elements
  * of linear cells, or of quadratic triangles and tetrahedra, which may be curved, on the mesh at
- * input port 0. Input port 1 (optional) is a vtkSelection of points, or of cells with their points,
- * where the solution is given.
+ * input port 0. Input port 1 (optional) is a vtkSelection of points, or of cells whose points
+ * count, where the solution is given.
  *
- * Points at the same place on facets that match, as on the seams of a mesh in pieces, are one point
- * by default (MergeCoincidentPoints); the output has the points of the input, with the same value
- * at all that are one. Each block of a multiblock data set is a mesh of its own, unless there is a
- * seam between them; the partitions of a partitioned data set are one mesh. With several MPI
- * processes (pvserver, pvbatch) the parts of all processes are one mesh, which they solve together;
- * ghost cells are left out. Points on several processes are identified by their global ids if the
- * mesh has them, else by equal coordinates. Tables are those of process 0.
+ * Coincident points on matching facets, for example on the seams of a mesh in pieces, are treated
+ * as one point by default (MergeCoincidentPoints); the output has all points of the input, with
+ * equal values at merged points. Each block of a multiblock data set is a separate mesh, unless
+ * there is a seam between blocks; the partitions of a partitioned data set are one mesh. With
+ * several MPI processes (pvserver, pvbatch) the parts of all processes are one mesh, which is
+ * solved jointly; ghost cells are left out. Points on several processes are identified by their
+ * global ids if the mesh has them, otherwise by equal coordinates. Tables are on process 0.
  *
- * Output port 0 is the mesh with point and cell data, port 1 a vtkTable. Refused by name: inverted
- * and degenerate elements, duplicate cells, coincident facets that cannot be merged, polygons,
- * polyhedra, cells of higher order but quadratic triangles and tetrahedra, a mixture of these and
- * linear cells, cells without a consistent orientation, parts without a point where the solution is
- * given, values and coefficients that are not finite.
+ * Output port 0 is the mesh with point and cell data, port 1 a vtkTable. The following inputs are
+ * rejected with an error: inverted and degenerate elements, duplicate cells, coincident facets that
+ * cannot be merged, polygons, polyhedra, cells of higher order except quadratic triangles and
+ * tetrahedra, a mixture of these and linear cells, cells without a consistent orientation, parts
+ * without a point where the solution is given, and values and coefficients that are not finite.
  *
- * Arrays (SetInputArrayToProcess), by index: 0 fixed points (of points or cells), 1 source, 2 given
- * values (of points), 3 tensors, 4 factors of the stiffness (of cells); "None" or not set: none.
+ * Arrays (SetInputArrayToProcess), by index: 0 fixed points (point or cell array), 1 source, 2
+ * given values (point arrays), 3 tensors, 4 factors of the stiffness (cell arrays); "None" or not
+ * set: none.
  *
- * Expressions have the variables x, y, z and the point arrays by name, as in ParaView's Calculator:
+ * Expressions can use the variables x, y, z and point arrays by name, as in ParaView's Calculator:
  * sin(x)*exp(-y), "my array"/2, if(x<0.5, 1, 2); vectors are written 2*iHat - x*jHat.
  *
  * @sa vtkEllipticSolver, vtkConditionEstimator, vtkSolverStudy, tautline/Elliptic/EllipticProblem.h
@@ -59,7 +60,7 @@ public:
   vtkTypeMacro(vtkEllipticAlgorithm, vtkTautlineTimedAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /// Numbers of the equations; those of tautline::Pde.
+  /// The equations; values as in tautline::Pde.
   enum Equations
   {
     POISSON = 0,
@@ -77,9 +78,9 @@ public:
 
   ///@{
   /**
-   * Whether points with the same coordinates on facets that match are treated as one, and blocks
-   * with a seam between them as one mesh; off: as a crack or a contact needs it. The default is on.
-   * See tautline/Mesh/CoincidentPoints.h.
+   * Whether to treat points with the same coordinates on matching facets as one, and blocks with a
+   * seam between them as one mesh; switch it off for cracks and contacts. The default is on. See
+   * tautline/Mesh/CoincidentPoints.h.
    */
   vtkSetMacro(MergeCoincidentPoints, bool);
   vtkGetMacro(MergeCoincidentPoints, bool);
@@ -87,7 +88,7 @@ public:
   ///@}
 
   ///@{
-  /// Coefficients of ELLIPTIC: at least 0. The default is 1 each; gamma is for volumes. Array 3
+  /// Coefficients of ELLIPTIC, at least 0. The default is 1 each; gamma applies to volumes. Array 3
   /// replaces them.
   vtkSetMacro(Alpha, double);
   vtkGetMacro(Alpha, double);
@@ -98,20 +99,21 @@ public:
   ///@}
 
   ///@{
-  /// a of ELLIPTIC. The default is 1. Where it is negative, the matrix may be indefinite: MINRES
-  /// and GMRES take it.
+  /// The coefficient a of ELLIPTIC. The default is 1. If it is negative, the matrix may be
+  /// indefinite: use MINRES or GMRES.
   vtkSetMacro(Reaction, double);
   vtkGetMacro(Reaction, double);
   ///@}
 
   ///@{
-  /// E of ELASTICITY, above 0, in the unit of stress. The default is 1. Array 4 has factors of it.
+  /// Young's modulus E of ELASTICITY, above 0, in the unit of stress. The default is 1. Array 4 has
+  /// factors of it.
   vtkSetMacro(YoungsModulus, double);
   vtkGetMacro(YoungsModulus, double);
   ///@}
 
   ///@{
-  /// nu of ELASTICITY, between -1 and 0.5. The default is 0.3.
+  /// Poisson's ratio nu of ELASTICITY, between -1 and 0.5. The default is 0.3.
   vtkSetMacro(PoissonRatio, double);
   vtkGetMacro(PoissonRatio, double);
   ///@}
@@ -123,13 +125,13 @@ public:
     PLANE_STRESS = 1
   };
   ///@{
-  /// PLANE_STRAIN, a slice of a long body (the default), or PLANE_STRESS, a thin sheet. Planar
-  /// meshes only.
+  /// PLANE_STRAIN (the default), for a slice of a long body, or PLANE_STRESS, for a thin sheet.
+  /// Planar meshes only.
   vtkTautlineSetRangeMacro(PlaneState, int, PLANE_STRAIN, PLANE_STRESS);
   vtkGetMacro(PlaneState, int);
   ///@}
 
-  /// How a function is given.
+  /// The ways to define a function.
   enum FunctionTypes
   {
     CONSTANT = 0,
@@ -137,7 +139,7 @@ public:
     EXPRESSION = 2
   };
   ///@{
-  /// f: CONSTANT (the default), ARRAY (array 1) or EXPRESSION.
+  /// The type of f: CONSTANT (the default), ARRAY (array 1) or EXPRESSION.
   vtkTautlineSetRangeMacro(SourceType, int, CONSTANT, EXPRESSION);
   vtkGetMacro(SourceType, int);
   ///@}
@@ -149,18 +151,18 @@ public:
   ///@}
 
   ///@{
-  /// The constant f of ELASTICITY, a force per volume; the default is (1, 0, 0).
+  /// The constant f for ELASTICITY, a force per volume; the default is (1, 0, 0).
   vtkSetVector3Macro(BodyForce, double);
   vtkGetVector3Macro(BodyForce, double);
   ///@}
 
   ///@{
-  /// f as an expression; of ELASTICITY a vector, such as "-9.81*jHat + 0*iHat".
+  /// f as an expression; for ELASTICITY a vector, such as "-9.81*jHat + 0*iHat".
   vtkSetMacro(SourceExpression, std::string);
   vtkGetMacro(SourceExpression, std::string);
   ///@}
 
-  /// Which points of the boundary are fixed: there the solution is given.
+  /// The fixed points of the boundary, where the solution is given.
   enum FixedParts
   {
     WHOLE_BOUNDARY = 0,
@@ -170,16 +172,16 @@ public:
   ///@{
   /**
    * WHOLE_BOUNDARY (the default), PART_OF_BOUNDARY, where FixedWhere is not 0, or ONLY_CHOSEN. In
-   * any case points are fixed where array 0 is not 0 (of cells: the points of such cells), and
-   * those selected at input port 1. On the rest of the boundary the natural condition holds: no
-   * flux, no traction.
+   * any case, points are fixed where array 0 is not 0 (for a cell array, the points of such cells),
+   * or if they are selected at input port 1. On the rest of the boundary the natural condition
+   * holds: no flux, no traction.
    */
   vtkTautlineSetRangeMacro(FixedPart, int, WHOLE_BOUNDARY, ONLY_CHOSEN);
   vtkGetMacro(FixedPart, int);
   ///@}
 
   ///@{
-  /// An expression that is not 0 on the fixed part of the boundary, such as "x < 0.01".
+  /// An expression that is nonzero on the fixed part of the boundary, such as "x < 0.01".
   vtkSetMacro(FixedWhere, std::string);
   vtkGetMacro(FixedWhere, std::string);
   ///@}
@@ -216,18 +218,17 @@ public:
 
   enum Redistributions
   {
-    NO_REDISTRIBUTION = 0, ///< each process works on the cells that its pieces have
-    KD_TREE = 1,           ///< boxes of about as many points: fast
-    PT_SCOTCH = 2 ///< parts of about as many elements with short borders: needs PETSc's PT-Scotch
+    NO_REDISTRIBUTION = 0, ///< each process works on the cells of its pieces
+    KD_TREE = 1,           ///< boxes with about equal numbers of points; fast
+    PT_SCOTCH = 2          ///< balanced parts with short borders; needs PETSc with PT-Scotch
   };
 
   ///@{
   /**
-   * On a server with several processes: whether and how each mesh is divided anew among them, also
-   * where all of it is on the first process, as readers of serial files leave it. Then all of them
-   * have as much to do, and little to send. The result goes back to the pieces of the input, with
-   * the same points and cells. RedistributeOn() takes the k-d tree. The default is
-   * NO_REDISTRIBUTION.
+   * On a server with several processes: whether and how each mesh is redistributed among them, also
+   * if all of it is on the first process, as after reading a serial file. This balances the work
+   * and limits the communication. The result goes back to the pieces of the input, with the same
+   * points and cells. RedistributeOn() selects the k-d tree. The default is NO_REDISTRIBUTION.
    */
   vtkTautlineSetRangeMacro(Redistribute, int, NO_REDISTRIBUTION, PT_SCOTCH);
   vtkGetMacro(Redistribute, int);
@@ -237,20 +238,21 @@ public:
   ///@{
   /**
    * Options of PETSc, such as "-pc_hypre_boomeramg_strong_threshold 0.5". They override other
-   * properties. Permitted are options that choose and tune methods and preconditioners; those that
-   * read, write or display something, load code or need data from a program are refused by name.
-   * The options of other users of PETSc in the process are neither read nor changed.
+   * properties. Only options that choose and tune methods and preconditioners are permitted;
+   * options that read, write or display something, load code or need data from a program are
+   * rejected with an error. The options of other users of PETSc in the process are neither read nor
+   * changed.
    */
   vtkSetMacro(PETScOptions, std::string);
   vtkGetMacro(PETScOptions, std::string);
   ///@}
 
-  /// Unknowns of the last system, on all processes, of all blocks together.
+  /// Number of unknowns of the last system, over all processes and blocks.
   vtkIdType GetUnknowns() const { return this->Unknowns; }
-  /// Seconds the last assembly took, of all blocks together.
+  /// Time of the last assembly in seconds, over all blocks.
   double GetAssemblySeconds() const { return this->AssemblySeconds; }
-  /// Systems assembled since this filter was made: a time step that is shown takes that of the
-  /// others.
+  /// Number of systems assembled since this filter was created; all time steps shown share one
+  /// system.
   int GetAssemblies() const { return this->Assemblies; }
 
 protected:
@@ -261,7 +263,7 @@ protected:
     vtkInformationVector* outputVector) override;
   void ClearResult() override;
 
-  /// Clears the results of the last execution that a derived class has.
+  /// Clears the derived class's results of the last execution.
   virtual void Reset();
   /// Computes the result on a mesh. Collective. Throws tautline::Error.
   virtual void Compute(const tautline::EllipticInput& input, tautline::LocalMesh& mesh,
@@ -272,14 +274,14 @@ protected:
   virtual bool KeepsSystems() const { return false; }
   void ForgetSystems();
 
-  /// Adds a paragraph to the summary, which begins with the block's name.
+  /// Adds a paragraph to the summary that begins with the block's name.
   void Describe(const tautline::LocalMesh& mesh, const std::string& text);
-  /// Something did not succeed: RequestData() ends with a warning, the summary.
+  /// Makes RequestData() end with the summary as a warning, because a step failed.
   void Warn() { this->Failed = true; }
   /// Reports a fraction of the work on a mesh. @return false to stop
   bool Report(const tautline::LocalMesh& mesh, double fraction);
-  /// For the kernel, while it has nothing to report: reports the last fraction again. The result
-  /// of the function is true to stop.
+  /// For the kernel when it has no progress to report: reports the last fraction again. The
+  /// function returns true to stop.
   std::function<bool()> Cancelled();
 
   double Omega = 1.0;

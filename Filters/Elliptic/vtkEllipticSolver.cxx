@@ -38,7 +38,7 @@ constexpr int NumberOfInputs = 2;
 constexpr int InitialArray = 5, VelocityArray = 6;
 constexpr double ReportInterval = 0.05; // of progress, in seconds
 
-/// How far a Krylov method is, by the digits it has gained.
+/// The progress of a Krylov method, by the number of digits gained.
 double fractionOf(double first, double residual, double tolerance)
 {
   if (!(first > 0 && residual > 0 && tolerance > 0 && tolerance < 1))
@@ -76,7 +76,7 @@ std::string summaryOf(const tautline::LinearSolution& solved,
   return text.str();
 }
 
-/// @param time the one that is shown. @param outside the number of points in no element
+/// @param time the time shown @param outside the number of points in no element
 std::string summaryOf(const tautline::TimeSeries& series, double time, int steps, double step,
   const tautline::EllipticSystem& system, tautline::Index outside)
 {
@@ -178,7 +178,7 @@ int vtkEllipticSolver::RequestInformation(
     vtkInformation* info = outputVector->GetInformationObject(port);
     if (!ours)
     {
-      if (!theirs) // those of an earlier scheme
+      if (!theirs) // left by an earlier scheme
       {
         info->Remove(Pipeline::TIME_STEPS());
         info->Remove(Pipeline::TIME_RANGE());
@@ -197,7 +197,7 @@ int vtkEllipticSolver::RequestInformation(
 int vtkEllipticSolver::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
 {
-  // The time requested is that of the equation, which has no meaning upstream.
+  // The requested time belongs to the equation and has no meaning upstream.
   for (int port = 0; this->TimeScheme != STATIONARY && port < NumberOfInputs; ++port)
   {
     for (int i = 0; i < inputVector[port]->GetNumberOfInformationObjects(); ++i)
@@ -246,7 +246,7 @@ int vtkEllipticSolver::SolveOrShow(
   tautline::ContentStamp inputs = tautline::contentStamp(data);
   const bool same = this->SeriesTime.GetMTime() > this->GetMTime() && inputs == this->SeriesInputs;
   this->SeriesInputs = std::move(inputs);
-  // A process whose piece is the old one solves again with the others.
+  // A process whose piece has not changed solves again with the others.
   if (!tautline::makeProcessGroup()->everywhere(same))
   {
     this->Series.clear();
@@ -324,7 +324,7 @@ void vtkEllipticSolver::ComputeSteps(const tautline::EllipticInput& input,
       tautline::integrate(system, time, start, velocity, options));
   }
 
-  // The last step at or before the time requested.
+  // The last step at or before the requested time.
   const double slack = 1e-9 * this->TimeStep;
   const auto after =
     std::upper_bound(series->times.begin(), series->times.end(), this->RequestedTime + slack);
@@ -364,9 +364,8 @@ void vtkEllipticSolver::Compute(const tautline::EllipticInput& input, tautline::
   {
     if (!this->ExactSolution.empty())
     {
-      throw tautline::Error(
-        "An exact solution can be compared with a stationary one only: choose no "
-        "time scheme, or leave the exact solution empty.");
+      throw tautline::Error("An exact solution can be compared only with a stationary solution: "
+                            "choose no time scheme, or leave the exact solution empty.");
     }
     this->ComputeSteps(input, mesh, processes, table);
     return;
@@ -376,7 +375,7 @@ void vtkEllipticSolver::Compute(const tautline::EllipticInput& input, tautline::
   double first = 0.0;
   options.observer = [&](int iteration, double residual)
   {
-    constexpr double setup = 0.4; // of the preconditioner, which takes about as long
+    constexpr double setup = 0.4; // fraction for the preconditioner, which takes about as long
     first = iteration == 0 ? residual : first;
     const double solved = fractionOf(first, residual, this->RelativeTolerance);
     return this->Report(mesh, setup + (1.0 - setup) * solved);
@@ -413,13 +412,13 @@ void vtkEllipticSolver::Compute(const tautline::EllipticInput& input, tautline::
 void vtkEllipticSolver::Compare(const tautline::EllipticSystem& system,
   const std::vector<double>& unknowns, tautline::RankGroup& processes)
 {
-  // The smallest step whose rounding errors are below the errors of the differences.
+  // The smallest step for which rounding errors stay below the errors of the differences.
   constexpr double relativeStep = 1e-5;
   const tautline::EllipticSolution solution = system.fields(unknowns);
   const double size = processes.maximum(tautline::diagonalOf(system.mesh().view()));
   tautline::PlaceFunction exact(
     this->ExactSolution, "exact solution", solution.components, relativeStep * size);
-  // An error at a place must not keep a process from the sums.
+  // A local error must not keep a process from the collective sums.
   std::exception_ptr failure;
   const std::array<double, 2> norms = tautline::errorNorms(system, solution,
     [&](const tautline::Vec3& place, double* value, double* gradient)

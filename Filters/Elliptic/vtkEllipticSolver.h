@@ -3,37 +3,37 @@
  * @class vtkEllipticSolver
  * @brief Solves an elliptic partial differential equation on a mesh, or a heat or wave equation.
  *
- * The problem and the inputs are those of vtkEllipticAlgorithm. The linear system is solved by a
- * Krylov method with a preconditioner, dissertation sections 2.5 and 2.6, or directly.
+ * See vtkEllipticAlgorithm for the problem and the inputs. The linear system is solved by a Krylov
+ * method with a preconditioner, dissertation sections 2.5 and 2.6, or directly.
  *
  * @par Output port 0 `Mesh`:
- * The input with the point array `Solution` (ELASTICITY: the vector `Displacement`), or of the name
- * SolutionName, and, if ComputeGradient is on, the cell arrays `Gradient` (3 components) or, of
+ * The input with the point array `Solution` (ELASTICITY: the vector `Displacement`), or the name in
+ * SolutionName, and, if ComputeGradient is on, the cell arrays `Gradient` (3 components) or, for
  * ELASTICITY, `Stress` (6: XX YY ZZ XY YZ XZ) and `VonMises`. Points outside all elements get 0.
  *
  * @par Output port 1 `History`:
  * A vtkTable whose row i is iteration i (0 is the start): `Log10 residual`, relative to the first,
- * and `N residual`, its norm as the method measures it; of composite data sets also `Block`.
+ * and `N residual`, its norm as measured by the method; of composite data sets also `Block`.
  *
  * @par Output port 2 `Sections`:
  * A vtkPolyData, filled if ComputeSections is on: sections of a volume mesh by three planes, normal
- * to the axes, in the middle of where it has large sections, with the data of the mesh. They show
- * the solution inside, of which the surface shows nothing where the whole boundary is fixed.
+ * to the axes, in the middle of the range of large sections, with the data of the mesh. They show
+ * the interior solution, which is not visible on the surface if the whole boundary is fixed.
  *
  * With a TimeScheme other than STATIONARY the filter solves the heat equation rho u_t + L u = f or
  * the wave equation rho u_tt + L u = f, where L u = f is the stationary equation: NumberOfTimeSteps
- * of length TimeStep from the initial values, which are the time steps of the pipeline. f and the
- * given values do not depend on time. The output is that of the time requested, at first of the
+ * steps of length TimeStep from the initial values, which become the time steps of the pipeline. f
+ * and the given values do not depend on time. The output is for the requested time, by default the
  * last one; the table then has a row per step: `Time`, `N iterations` and `N residual`, the norm of
  * the last one. All steps are computed once and kept: 8 bytes per unknown and step.
  *
- * A solve that does not converge is a warning with its reason; the solution is then the best there
- * was. Whatever the method reports, it has converged only if norm of b - A x is at most 1000 times
- * the tolerance (tautline::ResidualFactor).
+ * A solve that does not converge causes a warning with the reason; the solution is then the best
+ * one found. Whatever the method reports, it has converged only if the norm of b - A x is at most
+ * 1000 times the tolerance (tautline::ResidualFactor).
  *
- * TimeLimit covers set-ups and factorizations: one that takes longer is given up, the solution is
- * 0, and the next solve waits until the abandoned work has ended in the background. In pvserver,
- * pvbatch and with several processes the limit is checked after a set-up and between iterations.
+ * TimeLimit covers setups and factorizations: a setup that takes longer is abandoned, the solution
+ * is 0, and the next solve waits until the abandoned work has ended in the background. In pvserver,
+ * pvbatch and with several processes the limit is checked after a setup and between iterations.
  *
  *     vtkNew<vtkEllipticSolver> solver;
  *     solver->SetInputData(mesh);
@@ -71,7 +71,7 @@ public:
   vtkTypeMacro(vtkEllipticSolver, vtkKrylovAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /// Numbers of the methods; those of tautline::KrylovMethod.
+  /// The methods; values as in tautline::KrylovMethod.
   enum Solvers
   {
     CG = 0,
@@ -81,12 +81,12 @@ public:
     DIRECT = 4
   };
   ///@{
-  /// The method. The default is CG.
+  /// The solution method. The default is CG.
   vtkTautlineSetRangeMacro(Solver, int, CG, DIRECT);
   vtkGetMacro(Solver, int);
   ///@}
 
-  /// Numbers of the preconditioners; those of tautline::Preconditioner.
+  /// The preconditioners; values as in tautline::Preconditioner.
   enum Preconditioners
   {
     JACOBI = 0,
@@ -100,15 +100,16 @@ public:
   ///@{
   /**
    * Jacobi, SSOR with Omega, ILU(0), BoomerAMG (the default), incomplete Cholesky, smoothed
-   * aggregation, or none. With several processes SSOR, ILU and incomplete Cholesky work in the
-   * block of each process.
+   * aggregation, or none. With several processes, SSOR, ILU and incomplete Cholesky act on the
+   * diagonal block of each process.
    */
   vtkTautlineSetRangeMacro(Preconditioner, int, JACOBI, NONE);
   vtkGetMacro(Preconditioner, int);
   ///@}
 
   ///@{
-  /// Whether multigrid gets the rigid body modes of an elastic body, its near-null space. On.
+  /// Whether multigrid uses the rigid body modes of an elastic body, its near-null space. The
+  /// default is on.
   vtkSetMacro(RigidBodyModes, bool);
   vtkGetMacro(RigidBodyModes, bool);
   vtkBooleanMacro(RigidBodyModes, bool);
@@ -117,8 +118,9 @@ public:
   ///@{
   /**
    * Whether BoomerAMG coarsens aggressively and interpolates sparsely,
-   * tautline::fastMultigridOptions(). It takes more iterations and much less time, above all in
-   * volumes and on several processes. Off: PETSc's defaults, those of the dissertation. On.
+   * tautline::fastMultigridOptions(). This takes more iterations but much less time, especially in
+   * volumes and on several processes. If off, PETSc's defaults apply, as in the dissertation. The
+   * default is on.
    */
   vtkSetMacro(FastMultigrid, bool);
   vtkGetMacro(FastMultigrid, bool);
@@ -126,13 +128,14 @@ public:
   ///@}
 
   ///@{
-  /// Name of the solution; "" is `Solution`, or `Displacement` of ELASTICITY. The default is "".
+  /// Name of the solution; "" stands for `Solution`, or `Displacement` for ELASTICITY. The default
+  /// is "".
   vtkSetMacro(SolutionName, std::string);
   vtkGetMacro(SolutionName, std::string);
   ///@}
 
   ///@{
-  /// Whether to add gradient or stress. On.
+  /// Whether to add the gradient or the stress. The default is on.
   vtkSetMacro(ComputeGradient, bool);
   vtkGetMacro(ComputeGradient, bool);
   vtkBooleanMacro(ComputeGradient, bool);
@@ -141,9 +144,9 @@ public:
   ///@{
   /**
    * The exact solution of a stationary problem, as an expression of x, y and z (ELASTICITY: a
-   * vector), to compute SolutionError and GradientError; "" (the default): it is not known. Its
-   * gradient is found by central differences. Computing the norms takes about 20 microseconds for
-   * a triangle and 100 for a tetrahedron.
+   * vector), to compute SolutionError and GradientError; "" (the default) if it is not known. Its
+   * gradient is computed by central differences. Computing the norms takes about 20 microseconds
+   * for a triangle and 100 for a tetrahedron.
    */
   vtkSetMacro(ExactSolution, std::string);
   vtkGetMacro(ExactSolution, std::string);
@@ -156,7 +159,7 @@ public:
   vtkBooleanMacro(ComputeSections, bool);
   ///@}
 
-  /// Numbers of the schemes; those of tautline::TimeScheme.
+  /// The schemes; values as in tautline::TimeScheme.
   enum TimeSchemes
   {
     STATIONARY = 0,
@@ -167,9 +170,9 @@ public:
   };
   ///@{
   /**
-   * STATIONARY (the default): no time. Of the heat equation: BACKWARD_EULER (order 1), BDF2 (order
-   * 2) and CRANK_NICOLSON (order 2, does not damp the finest oscillations). Of the wave equation:
-   * NEWMARK, with constant average acceleration (order 2, keeps the energy).
+   * STATIONARY (the default): no time. For the heat equation: BACKWARD_EULER (order 1), BDF2 (order
+   * 2) and CRANK_NICOLSON (order 2, does not damp the finest oscillations). For the wave equation:
+   * NEWMARK, with constant average acceleration (order 2, conserves energy).
    */
   vtkTautlineSetRangeMacro(TimeScheme, int, STATIONARY, NEWMARK);
   vtkGetMacro(TimeScheme, int);
@@ -187,7 +190,7 @@ public:
   vtkGetMacro(NumberOfTimeSteps, int);
   ///@}
 
-  /// Numbers of the mass matrices; those of tautline::MassMatrix.
+  /// The mass matrices; values as in tautline::MassMatrix.
   enum MassMatrices
   {
     CONSISTENT = 0,
@@ -200,7 +203,7 @@ public:
   ///@}
 
   ///@{
-  /// rho, the factor of the time derivative, above 0. The default is 1.
+  /// The density rho, the factor of the time derivative, above 0. The default is 1.
   vtkSetMacro(Density, double);
   vtkGetMacro(Density, double);
   ///@}
@@ -208,7 +211,7 @@ public:
   ///@{
   /**
    * The solution at time 0: CONSTANT (the default), ARRAY (array 5) or EXPRESSION. Fixed points
-   * have their given values from the start on.
+   * have their given values from the start.
    */
   vtkTautlineSetRangeMacro(InitialType, int, CONSTANT, EXPRESSION);
   vtkGetMacro(InitialType, int);
@@ -221,7 +224,8 @@ public:
   ///@}
 
   ///@{
-  /// The time derivative of the solution at time 0, of NEWMARK: as the initial solution; array 6.
+  /// The time derivative of the solution at time 0, for NEWMARK; defined like the initial solution,
+  /// with array 6.
   vtkTautlineSetRangeMacro(VelocityType, int, CONSTANT, EXPRESSION);
   vtkGetMacro(VelocityType, int);
   vtkSetMacro(VelocityValue, double);
@@ -239,27 +243,26 @@ public:
   ///@}
 
   ///@{
-  /// Of the last execution: whether all blocks converged and how the last one ended; iterations of
-  /// all blocks together.
+  /// In the last execution: whether all blocks converged, the reason why the last one ended, and
+  /// the total number of iterations.
   bool GetConverged() const { return this->Converged; }
   const char* GetReason() const { return this->Reason.c_str(); }
   int GetIterations() const { return this->Iterations; }
-  /// Time steps that were computed, of all blocks: fewer than asked for where one did not converge.
+  /// Number of computed time steps over all blocks: fewer than requested if one did not converge.
   int GetComputedTimeSteps() const { return this->ComputedTimeSteps; }
   ///@}
 
   ///@{
   /**
-   * With ExactSolution, of all blocks together: the norm in L2 of the difference between the
-   * solution and the exact one, and the norm in L2 of the difference of the gradients, the H1
-   * seminorm of the error. Else 0.
+   * With ExactSolution, over all blocks: the L2 norm of the error of the solution, and the L2 norm
+   * of the error of its gradient (the H1 seminorm of the error). Otherwise 0.
    */
   double GetSolutionError() const { return this->SolutionError; }
   double GetGradientError() const { return this->GradientError; }
   ///@}
 
   ///@{
-  /// Seconds of the set-up of the preconditioner and of the solve, of all blocks together.
+  /// Time of the preconditioner setup and of the solve in seconds, over all blocks.
   double GetSetupSeconds() const { return this->SetupSeconds; }
   double GetSolveSeconds() const { return this->SolveSeconds; }
   ///@}
@@ -276,7 +279,7 @@ protected:
   int RequestData(vtkInformation*, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
   void Reset() override;
-  /// The time steps of one solution have one system.
+  /// The time steps of one solution share one system.
   bool KeepsSystems() const override { return this->TimeScheme != STATIONARY; }
   void Compute(const tautline::EllipticInput& input, tautline::LocalMesh& mesh,
     tautline::RankGroup& processes, tautline::TableRows& table) override;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkKrylovAlgorithm
- * @brief Base class of the filters that run Krylov methods: when these stop.
+ * @brief Base class of filters that run Krylov methods; defines the stopping criteria.
  *
  * Abstract. See vtkEllipticAlgorithm for the boundary value problem.
  *
@@ -26,14 +26,14 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /// Of the preconditioned residual, relative to the first, above 0 and below 1. The default is
-  /// 1e-5, PETSc's.
+  /// Tolerance of the preconditioned residual relative to the first, above 0 and below 1. The
+  /// default is 1e-5, PETSc's.
   vtkSetMacro(RelativeTolerance, double);
   vtkGetMacro(RelativeTolerance, double);
   ///@}
 
   ///@{
-  /// Norm of the residual that is enough in any case, at least 0. The default is 1e-50, PETSc's.
+  /// Residual norm that suffices in any case, at least 0. The default is 1e-50, PETSc's.
   vtkSetMacro(AbsoluteTolerance, double);
   vtkGetMacro(AbsoluteTolerance, double);
   ///@}
@@ -45,7 +45,7 @@ public:
   ///@}
 
   ///@{
-  /// m of GMRES(m), at least 1. The default is 30.
+  /// The restart parameter m of GMRES(m), at least 1. The default is 30.
   vtkSetMacro(Restart, int);
   vtkGetMacro(Restart, int);
   ///@}
@@ -54,7 +54,7 @@ protected:
   vtkKrylovAlgorithm();
   ~vtkKrylovAlgorithm() override;
 
-  /// Sets these properties in the options of the kernel, and omega, PETSc's options and threads.
+  /// Copies these properties, omega, PETSc's options and threads to the options of the kernel.
   void SetCommonOptions(tautline::SolverOptions& options) const;
 
   double RelativeTolerance = 1e-5;

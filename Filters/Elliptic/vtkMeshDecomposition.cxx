@@ -18,7 +18,7 @@ vtkStandardNewMacro(vtkMeshDecomposition);
 
 namespace
 {
-constexpr char Remedy[] = "take a smaller mesh";
+constexpr char Remedy[] = "use a smaller mesh";
 }
 
 //------------------------------------------------------------------------------

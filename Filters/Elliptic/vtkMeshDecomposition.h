@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkMeshDecomposition
- * @brief Divides a mesh into parts for several processes, and counts what a division costs them.
+ * @brief Divides a mesh into parts for several processes, and counts the communication cost of a
+ * division.
  *
  * For the study `decomposition`: nothing is sent, so that divisions into more parts than there are
  * processes can be compared. Errors are error events; the array or the table is then empty.
@@ -36,26 +37,27 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /// From 1 to 1,000,000; the default is 2.
+  /// The number of parts, 1 to 1,000,000; the default is 2.
   vtkTautlineSetRangeMacro(NumberOfParts, int, 1, 1000000);
   vtkGetMacro(NumberOfParts, int);
   ///@}
 
-  /// Divides the graph of the cells by PT-Scotch, see tautline::partitionGraph(). @param parts gets
-  /// the number of the part of each cell
+  /// Divides the graph of the cells by PT-Scotch, see tautline::partitionGraph(). @param parts
+  /// receives the part number of each cell
   void DivideGraph(vtkDataSet* mesh, vtkIntArray* parts);
 
   /**
-   * Counts what sweeps over the points inside the mesh cost, see tautline::countDecomposition().
-   * @param parts the number of the part of each cell, from 0 on
-   * @param table gets a row per part with the columns `Cells`, `Points`, `Free Points`, `Halo
+   * Counts the cost of sweeps over the interior points of the mesh, see
+   * tautline::countDecomposition().
+   * @param parts the part number of each cell, from 0
+   * @param table receives a row per part with the columns `Cells`, `Points`, `Free Points`, `Halo
    * Points`, `Neighbours`, `Messages`, `Sent Points`
    */
   void Count(vtkDataSet* mesh, vtkIntArray* parts, vtkTable* table);
 
   ///@{
-  /// Of the last Count(): independent sets, points that move in a sweep, and of these how many move
-  /// one after the other where the processes wait for each other after each set.
+  /// Results of the last Count(): the number of independent sets, the number of points that move in
+  /// a sweep, and the number of sequential moves if the processes synchronize after each set.
   vtkGetMacro(NumberOfSets, vtkIdType);
   vtkGetMacro(FreePoints, vtkIdType);
   vtkGetMacro(SlowestPoints, vtkIdType);

@@ -20,7 +20,7 @@ namespace
 {
 constexpr int StudyPort = 1;
 constexpr int WithModes = 24,
-              WithoutModes = 25;        // numbers of combinations, by what multigrid gets
+              WithoutModes = 25;        // numbers of combinations, by the input of multigrid
 constexpr const char* FailedMark = "*"; // as in Tables 2.8 to 2.12
 constexpr const char* NotRunMark = "-";
 
@@ -46,7 +46,7 @@ const std::vector<tautline::SolverCombination>& allCombinations()
   return all;
 }
 
-/// The place of each row, from 1: by time, then those that did not converge.
+/// The rank of each row, from 1, by time; rows that did not converge come last.
 std::vector<int> ranksOf(const std::vector<tautline::SolverStudyRow>& rows)
 {
   const auto fails = [&](int i) { return !rows[i].run || !converged(rows[i].linear.reason); };

@@ -98,7 +98,7 @@ std::vector<double> vtkBoundaryMesher::TakeSizes(vtkPointSet* input)
     values.push_back(sizes->GetComponent(i, 0));
     if (!(values.back() > 0.0 && std::isfinite(values.back())))
     {
-      throw tautline::Error("sizes must be positive and finite; that of point " +
+      throw tautline::Error("sizes must be positive and finite; the size at point " +
         std::to_string(i) + " is " + std::to_string(values.back()));
     }
   }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkBoundaryMesher
- * @brief Base class of the meshers: a boundary becomes a mesh of what it surrounds.
+ * @brief Base class of the meshers, which mesh the region inside a boundary.
  *
  * Abstract. The input is a vtkPointSet with the boundary. Output port 0 is a vtkUnstructuredGrid,
  * the mesh; output port 1 is a vtkPolyData, the subdivided boundary on the same points. Both
- * have the array `BoundaryMarker`. After an error or an abort both are empty.
+ * have the array `BoundaryMarker`. Both are empty after an error or an abort.
  *
  * Derived classes run the program tautline-mesher, see Filters/Meshing/README.md; without it they
  * report an error.
@@ -42,8 +42,8 @@ public:
 
   ///@{
   /**
-   * Seconds for an execution, at least 0; 0 is no limit. After it the execution ends with an error.
-   * The default is 600.
+   * Time limit of an execution in seconds, at least 0; 0 means no limit. After it the execution
+   * ends with an error. The default is 600.
    */
   vtkTautlineSetRangeMacro(TimeLimit, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(TimeLimit, double);

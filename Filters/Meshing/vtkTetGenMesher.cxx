@@ -82,7 +82,7 @@ tautline::SolidBoundary takeSurface(vtkPointSet* input)
   if (others > 0)
   {
     throw Error(std::to_string(others) +
-      " cells are no triangles, quadrilaterals or polygons; run Extract Surface first");
+      " cells are not triangles, quadrilaterals or polygons; run Extract Surface first");
   }
   boundary.holes = fieldValues(input, "Holes", 3);
   const std::vector<double> facetHoles = fieldValues(input, "FacetHoles", 4);

@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkTetGenMesher
- * @brief Quality tetrahedra in a closed surface with TetGen (AGPL).
+ * @brief Generates quality tetrahedra in a closed surface with TetGen (AGPL).
  *
- * Input: triangles, quadrilaterals and polygons that share their points and close one or more
- * volumes (merge doubled points with Clean to Grid first). Inner surfaces part the volume. Field
- * arrays, as vtkTetGenReader gives them: `Holes` (a point x y z in each cavity), `Regions` (x y z,
+ * Input: triangles, quadrilaterals and polygons that share their points and enclose one or more
+ * volumes (merge duplicate points with Clean to Grid first). Inner surfaces divide the volume.
+ * Field arrays, as from vtkTetGenReader: `Holes` (a point x y z in each cavity), `Regions` (x y z,
  * reference, largest volume; negative for none), `FacetHoles`. Polygons with the same value of the
  * cell array `Facet` are one facet with holes.
  *
  * Output 0, vtkUnstructuredGrid: tetrahedra; the input's points come first. Point array
- * `BoundaryMarker`: the lowest marker of the facets a point is on (cell array `BoundaryMarker` of
- * the input, else 1), 0 inside. Cell array `Reference` with the region, if there are regions.
+ * `BoundaryMarker`: the lowest marker of the facets of a point (cell array `BoundaryMarker` of the
+ * input, otherwise 1), 0 inside. Cell array `Reference` with the region, if there are regions.
  * Output 1, vtkPolyData `Boundary`: the subdivided facets on the same points, with
  * `BoundaryMarker`.
  *
- * A surface that intersects itself is an error that names the facets. TetGen runs in a process of
- * its own: any failure of it is an error with an empty output, and an abort stops it.
- * Deterministic.
+ * A self-intersecting surface is an error that names the facets. TetGen runs in a separate process:
+ * any failure gives an error and an empty output, and an abort stops it. The result is
+ * deterministic.
  *
- * Limitations: TetGen reports no progress, so progress only shows that it runs.
+ * Limitations: TetGen reports no progress, so the progress only shows that it is running.
  *
  * Method: H. Si, TetGen, a Delaunay-based quality tetrahedral mesh generator, ACM Transactions on
  * Mathematical Software 41 (2015).
@@ -42,8 +42,8 @@ public:
 
   ///@{
   /**
-   * Largest ratio of circumradius and shortest edge of a tetrahedron; smaller is better, 1.1 and
-   * less seldom ends, 0 is no bound. The default is 1.4.
+   * Largest ratio of circumradius to shortest edge of a tetrahedron; smaller is better, but with
+   * 1.1 or less TetGen seldom terminates; 0 means no bound. The default is 1.4.
    */
   vtkTautlineSetRangeMacro(RadiusEdgeRatio, double, 0.0, 100.0);
   vtkGetMacro(RadiusEdgeRatio, double);
@@ -51,7 +51,7 @@ public:
 
   ///@{
   /**
-   * Smallest dihedral angle aimed at, degrees. The default is 10.
+   * Target for the smallest dihedral angle, in degrees. The default is 10.
    */
   vtkTautlineSetRangeMacro(MinimumDihedralAngle, double, 0.0, 60.0);
   vtkGetMacro(MinimumDihedralAngle, double);
@@ -59,7 +59,7 @@ public:
 
   ///@{
   /**
-   * Largest volume of a tetrahedron; 0 is no bound. The default is 0.
+   * Largest volume of a tetrahedron; 0 means no bound. The default is 0.
    */
   vtkTautlineSetRangeMacro(Volume, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(Volume, double);
@@ -67,7 +67,7 @@ public:
 
   ///@{
   /**
-   * Whether the input's facets stay as they are, without new points on them. The default is off.
+   * Whether to preserve the input's facets, without new points on them. The default is off.
    */
   vtkSetMacro(PreserveSurface, bool);
   vtkGetMacro(PreserveSurface, bool);

@@ -36,9 +36,9 @@ tautline::PlanarBoundary takeBoundary(vtkPointSet* input)
   const double extent = std::max(bounds[1] - bounds[0], bounds[3] - bounds[2]);
   if (bounds[5] - bounds[4] > 1e-9 * extent)
   {
-    throw Error("the outlines are not in a plane z = constant (z is from " +
+    throw Error("the outlines are not in a plane z = constant (z ranges from " +
       std::to_string(bounds[4]) + " to " + std::to_string(bounds[5]) +
-      "); use Transform to lay them there");
+      "); use Transform to move them there");
   }
   for (vtkIdType i = 0; i < input->GetNumberOfPoints(); ++i)
   {
@@ -84,7 +84,7 @@ void vtkTriangleMesher::Generate(
     if (holes->GetNumberOfComponents() != 3)
     {
       throw Error("the field array Holes has " + std::to_string(holes->GetNumberOfComponents()) +
-        " components, 3 are expected");
+        " components; 3 are expected");
     }
     for (vtkIdType i = 0; i < holes->GetNumberOfTuples(); ++i)
     {
@@ -100,7 +100,7 @@ void vtkTriangleMesher::Generate(
   options.progress = [this](tautline::Index points)
   {
     const auto done = static_cast<double>(points);
-    constexpr double pointsForHalf = 2e4; // their number is not known beforehand
+    constexpr double pointsForHalf = 2e4; // their number is not known in advance
     tautline::advance(this, tautline::openEnded(done, pointsForHalf));
     return this->GetAbortExecute() == 0;
   };

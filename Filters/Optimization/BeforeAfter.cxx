@@ -69,7 +69,7 @@ void addStatistics(TableRows& rows, const std::string& ending, const Measurement
 
 namespace
 {
-/// Mean and worst value before and after, of what is compared.
+/// Mean and worst value before and after, over the compared elements.
 void describe(
   const std::string& of, const Measurement& before, const Measurement& after, std::ostream& text)
 {
@@ -184,7 +184,7 @@ std::string addBeforeAfter(const MovableMesh& mesh, const std::vector<double>& p
       measure(0);
       measure(1);
     }
-    else // at the same time: much of it is not cut into chunks
+    else // concurrently, because much of the work is not divided into chunks
     {
       parallelFor(2, 1, threads, measure);
     }
@@ -195,7 +195,7 @@ std::string addBeforeAfter(const MovableMesh& mesh, const std::vector<double>& p
       describe(label, before, after, text);
       continue;
     }
-    // The value of an inverted element is not compared with that of a valid one.
+    // The value of an inverted element is not compared with the value of a valid one.
     before = measureValid(mesh, what.metric, validityBefore, valuesBefore);
     after = measureValid(mesh, what.metric, validity->GetPointer(0), valuesAfter);
     if (before.statistics.measured > 0 && after.statistics.measured > 0)
@@ -204,7 +204,7 @@ std::string addBeforeAfter(const MovableMesh& mesh, const std::vector<double>& p
     }
   }
   output->GetCellData()->AddArray(validity);
-  // Without active point scalars, views colour by the metric.
+  // Without active point scalars, views color by the metric.
   output->GetPointData()->SetActiveScalars(nullptr);
   output->GetCellData()->SetActiveScalars(metrics.front().name.c_str());
   return text.str();

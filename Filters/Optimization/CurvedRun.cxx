@@ -12,10 +12,10 @@ namespace tautline
 {
 namespace
 {
-/// p of the p-mean that the preset Worst element minimizes after the sum.
+/// The exponent p of the p-mean that the preset Worst element minimizes after the sum.
 constexpr double WorstPower = 8;
 
-/// What the targets of objectives refer to.
+/// The data that the targets of objectives refer to.
 struct CurvedTargetData
 {
   std::vector<double> sizes, tensors, reference;
@@ -64,7 +64,7 @@ std::vector<double> referencePoints(
   return points;
 }
 
-/// Areas or volumes from targets of the ideal shape.
+/// Areas or volumes of targets with the ideal shape.
 std::vector<double> sizesOf(const Targets& targets, const Mesh& mesh)
 {
   const MeshView& view = mesh.view();
@@ -202,7 +202,7 @@ OptimizeResult runCurved(const OptimizerSettings& settings, OptimizerSetup& setu
   const bool ended = result.reason == StopReason::Aborted || result.reason == StopReason::TimeLimit;
   if (given.improveWorst > 0 && !ended && result.invertedAfter == 0)
   {
-    // The worst element, by a mean in which it dominates, from there.
+    // From there, improves the worst element by a mean that it dominates.
     options.objectives.resize(1);
     options.objectives[0].objective.objectiveTemplate = ObjectiveTemplate::PowerMean;
     options.objectives[0].objective.power = WorstPower;
@@ -211,7 +211,7 @@ OptimizeResult runCurved(const OptimizerSettings& settings, OptimizerSetup& setu
     worst.iterations += result.iterations;
     worst.invertedBefore = result.invertedBefore;
     worst.untangled = result.untangled;
-    // The objectives of the two runs have different values: the history is that of the first.
+    // The objectives of the two runs are not comparable: the history covers the first.
     worst.history = std::move(result.history);
     result = std::move(worst);
   }

@@ -11,14 +11,14 @@
 
 namespace tautline
 {
-/// The settings with which an OptimizerSetup is made of the corners: what the boundary does, and
-/// what it slides on, is that of all nodes.
+/// The settings for an OptimizerSetup of the corners; the boundary and its geometry apply to all
+/// nodes.
 OptimizerSettings settingsOfCorners(const OptimizerSettings& settings);
 
 /**
  * @brief Optimizes all nodes.
- * @param setup of the corners; its objectives count
- * Throws Error with the remedy for settings that curved cells do not have.
+ * @param setup of the corners; its objectives are used Throws Error, with the remedy, for settings
+ * that curved cells do not support.
  */
 OptimizeResult runCurved(const OptimizerSettings& settings, OptimizerSetup& setup,
   CurvedMotion& motion, const InputBlock& block);

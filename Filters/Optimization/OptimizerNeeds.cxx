@@ -8,7 +8,7 @@ namespace tautline
 {
 namespace
 {
-/// Whether the objectives have targets of a reference mesh.
+/// Whether the objectives have targets from a reference mesh.
 bool hasReference(const OptimizerSettings& settings)
 {
   const auto& rows = settings.objectives;

@@ -8,15 +8,15 @@ namespace tautline
 {
 namespace
 {
-/// What rounding would break, as the end of a sentence.
+/// The consequence of rounding, as the end of a sentence.
 std::string describeLoss(const RoundedResult& rounded)
 {
   return rounded.lost > 0 ? std::to_string(rounded.lost) + " valid elements would not be valid"
-    : rounded.worseWorst  ? "the worst element would be worse than that of the input"
-                          : "the objective would be larger than that of the input";
+    : rounded.worseWorst  ? "the worst element would be worse than in the input"
+                          : "the objective would be larger than in the input";
 }
 
-/// Why the points are not written in single precision.
+/// The reason why the points are not written in single precision.
 std::string describeDouble(const RoundedResult& rounded)
 {
   return "The points are given in double precision: in single precision " + describeLoss(rounded) +
@@ -30,7 +30,7 @@ std::vector<signed char> validityOf(const Mesh& mesh, int threads)
   return validity;
 }
 
-/// Takes over rounded points with what was measured there.
+/// Takes over rounded points with the measurements there.
 void take(OptimizeResult& result, std::vector<double> points, RoundedResult& rounded)
 {
   result.points = std::move(points);
@@ -59,7 +59,7 @@ RoundedResult OptimizerSetup::measureAt(const std::vector<double>& points,
     there.setSpace(local.space());
     RoundedResult rounded = measureRounded(local, validityOf(local, this->Options.threads),
       this->Options, result, there, this->TheMesh.division());
-    rounded.elements = {}; // not of the cells of the input
+    rounded.elements = {}; // not for the cells of the input
     return rounded;
   }
   Mesh there = this->Boundary.start().at(points.data());
@@ -86,7 +86,7 @@ void OptimizerSetup::round(OptimizerRun& run) const
   {
     if (mesh.inPieces() && !run.single)
     {
-      return; // in double precision they are as they were verified
+      return; // in double precision they are as verified
     }
     std::vector<double> points = mesh.rounded(result.points, run.single);
     const bool changed = points != result.points;
@@ -95,7 +95,7 @@ void OptimizerSetup::round(OptimizerRun& run) const
       return;
     }
     rounded = this->measureAt(points, validity, result);
-    // Where the input has invalid elements, double precision may cost some that were repaired.
+    // If the input has invalid elements, rounding to double precision may undo some repairs.
     const bool kept = rounded.keepsGuarantees() ||
       (!run.single && result.invertedBefore > 0 && rounded.inverted <= result.invertedBefore);
     if (kept)
@@ -110,8 +110,8 @@ void OptimizerSetup::round(OptimizerRun& run) const
     run.note = describeDouble(rounded);
   }
   run.note.clear();
-  run.warning = "The points stay where they are: so far from the origin coordinates have too few "
-                "digits, and rounded to these " +
+  run.warning = "The points do not move: this far from the origin, coordinates have too few "
+                "digits, and after rounding " +
     describeLoss(rounded) + ". Create the mesh near the origin.";
   const double* input = mesh.mesh().view().points;
   result.keepStart(

@@ -46,7 +46,7 @@ void OptimizerSetup::setLimits(const OptimizerSettings& settings, const InputBlo
     this->TheMesh.inPieces() ? this->TheMesh.group().any(!this->Limits.empty()) : array != nullptr;
   if (given)
   {
-    // Points that are one may move as far as the one with the smallest limit.
+    // Merged points may move by the smallest of their limits.
     this->Limits = this->TheMesh.leastOf(this->Limits, std::numeric_limits<double>::infinity());
   }
   else if (settings.maximumDisplacement > 0)
@@ -86,13 +86,13 @@ const Targets* OptimizerSetup::target(
   {
     const std::vector<double> ofPiece =
       hasCells ? targetValues(mesh.piece(), choice) : std::vector<double>();
-    // First, so that errors have the numbers of the input's cells.
+    // This comes first, so that errors refer to the input's cell numbers.
     this->TargetsOfPiece[number] = targetsOf(mesh.given(), type, ofPiece);
     made = targetsOf(mesh.local(), type, mesh.ofCells(ofPiece, targetComponents(type)));
     return &made;
   }
   made = makeTargets(mesh.given(), choice, this->Options.threads);
-  // T has the size it has in the coordinates of the input.
+  // T has the size given in the coordinates of the input.
   scaleTargets(made, mesh.frame().unit());
   return &made;
 }
@@ -157,7 +157,7 @@ void OptimizerSetup::setWeights(const OptimizerSettings& settings, const InputBl
   if (this->TheMesh.group().any(!this->Weights.empty()))
   {
     this->Weights = this->TheMesh.ofCells(this->Weights, 1);
-    this->Weights.reserve(1); // not null, also without cells
+    this->Weights.reserve(1); // not null, even without cells
   }
 }
 
@@ -210,10 +210,10 @@ OptimizeResult OptimizerSetup::run()
   {
     OptimizeResult result =
       optimize(this->TheMesh.local(), this->Options, {}, this->TheMesh.division());
-    result.elements = {}; // not of the cells of the input
+    result.elements = {}; // not for the cells of the input
     return result;
   }
-  // With a geometry, the start is another mesh than the input.
+  // With a geometry, the initial mesh differs from the input.
   const bool asGiven = &this->Boundary.start() == &this->TheMesh.mesh();
   OptimizeResult result = optimize(this->Boundary.start(), this->Options,
     asGiven ? this->TheMesh.validity() : std::vector<signed char>());
@@ -244,7 +244,7 @@ void compareSizesWith(
 {
   if (valid == 0)
   {
-    throw Error("No element is valid, so that there is no mean size to aim at: untangle the mesh "
+    throw Error("No element is valid, so there is no mean size for the target: untangle the mesh "
                 "first, or fix its boundary.");
   }
   const std::vector<double> sizes(mesh.view().numberOfCells, total / static_cast<double>(valid));
@@ -285,7 +285,8 @@ void OptimizerSetup::setUnit(Objective& objective) const
   {
     return;
   }
-  // A metric with a unit is reduced in that of the frame; one relative to the target, as it is.
+  // A metric with a unit is minimized in the unit of the frame; a metric relative to the target,
+  // unchanged.
   const int power = info.lengthPower(this->TheMesh.mesh().dimension() == Dimension::Volume ? 3 : 2);
   const double value = std::pow(unit, power);
   double& beta = objective.evaluation.parameters.beta;

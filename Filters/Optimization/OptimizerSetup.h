@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file OptimizerSetup.h
- * @brief From the properties of Optimize Mesh to the options of the kernel for one data set, and
- * what is kept of a run.
+ * @brief Translates the properties of Optimize Mesh into options of the kernel for one data set,
+ * and keeps the data of a run.
  */
 #ifndef tautline_OptimizerSetup_h
 #define tautline_OptimizerSetup_h
@@ -24,7 +24,7 @@ class vtkDataObject;
 
 namespace tautline
 {
-/// In the menu.
+/// The name in the menu.
 constexpr const char* OptimizerName = "Optimize Mesh";
 constexpr const char* BoundaryRemedy = "choose another Boundary";
 /// Input ports besides the mesh.
@@ -42,7 +42,7 @@ struct ObjectiveRow
   TargetType target = TargetType::Ideal;
 };
 
-/// The properties of the filter that depend on no data set.
+/// The properties of the filter that do not depend on a data set.
 struct OptimizerSettings
 {
   Preset preset = Preset::Custom;
@@ -53,9 +53,9 @@ struct OptimizerSettings
   BoundaryProperties boundary;      ///< and the filter whose input arrays are chosen
   double maximumDisplacement = 0.0; ///< 0: any distance
   bool mergePoints = true;          ///< whether coincident points on seams are one
-  /// All that needs no data set. Of CUSTOM, too, what a preset replaces.
+  /// All options that need no data set; for CUSTOM also the options that a preset replaces.
   OptimizeOptions options;
-  /// The array for a target, by index; of points or cells, by default the active scalars.
+  /// The point or cell array for a target, by index; the default is the active scalars.
   std::function<ChosenArray(int, vtkDataSet*)> targetArray;
 };
 
@@ -76,29 +76,29 @@ struct RoundedResult;
 
 /**
  * @class tautline::OptimizerSetup
- * @brief The options of the kernel for one data set, and all that they point to. Throws Error for
- * arrays that are missing or do not fit.
+ * @brief The options of the kernel for one data set, with the data that they point to. Throws Error
+ * for arrays that are missing or do not fit.
  */
 class OptimizerSetup
 {
 public:
-  /// @param mesh of the block, framed; outlives the setup. Collective if it is in pieces.
+  /// @param mesh of the block, framed; must outlive the setup. Collective if it is in pieces.
   OptimizerSetup(const OptimizerSettings& settings, const InputBlock& block, MovableMesh& mesh);
   OptimizerSetup(const OptimizerSetup&) = delete;
   OptimizerSetup& operator=(const OptimizerSetup&) = delete;
 
-  /// The features, and the mesh where the optimization starts.
+  /// The features, and the initial mesh of the optimization.
   const BoundarySetup& boundary() const { return this->Boundary; }
   OptimizeOptions& options() { return this->Options; }
   /// Optimizes from start().
   OptimizeResult run();
-  /// What is measured on the cells of the input.
+  /// The metrics to measure on the cells of the input.
   std::vector<MeasuredMetric> metrics() const;
   /**
-   * @brief Rounds the points of a result from start() on to those that are written, in single
-   * precision if the input has that, and measures the result there. Where this would break what
-   * optimize() guarantees, the points are given in double precision, and, where not even that is
-   * enough so far from the origin, those of the input.
+   * @brief Rounds the points of a result to the output precision (single precision if the input has
+   * it), and measures the rounded result. If this would violate the guarantees of optimize(), the
+   * points are given in double precision; if that is not sufficient this far from the origin, the
+   * points of the input are returned.
    */
   void round(OptimizerRun& run) const;
 
@@ -115,25 +115,26 @@ private:
 
   MovableMesh& TheMesh;
   BoundarySetup Boundary;
-  std::array<Targets, 4> MadeTargets;    ///< by type, of the cells that are optimized
-  std::array<Targets, 4> TargetsOfPiece; ///< the same of the cells of the input, if in pieces
+  std::array<Targets, 4> MadeTargets;    ///< by type, for the optimized cells
+  std::array<Targets, 4> TargetsOfPiece; ///< the same for the cells of the input, if in pieces
   std::array<bool, 4> HasTargets = {};
   std::vector<double> Weights, Limits;
   OptimizeOptions Options;
 };
 
 /**
- * @brief Why settings need the whole mesh in one place, if they do; `what` is a plural.
+ * @brief The reason why settings need the whole mesh on one process, if they do; `what` is a
+ * plural.
  * @param features whether feature kinds or regions are chosen, on any process
  * @param animation whether iterations are kept
  */
 NeedOfWholeMesh needOfWholeMesh(const OptimizerSettings& settings, bool features, bool animation);
 
-/// The objectives of CUSTOM, without targets; one at least.
+/// The objectives of CUSTOM, without targets; at least one.
 std::vector<Objective> customObjectives(const OptimizerSettings& settings);
-/// Of the preset UniformSize with a free boundary: sizes are compared with the mean size of the
-/// valid elements, as the sum of their squares would shrink the mesh to a point. Throws Error
-/// without a valid one.
+/// For the preset UniformSize with a free boundary: compares sizes with the mean size of the valid
+/// elements, because the sum of their squares would shrink the mesh to a point. Throws Error if no
+/// element is valid.
 void compareSizesWith(
   const Mesh& mesh, double total, Index valid, Targets& mean, OptimizeOptions& options);
 
@@ -146,19 +147,19 @@ struct OptimizerRun
     std::vector<double> points;
   };
   OptimizeResult result;
-  std::vector<Frame> frames; ///< of the animation, every stride-th iteration
+  std::vector<Frame> frames; ///< for the animation, every stride-th iteration
   int stride = 1;
   int iterations = 0;
   bool single = false; ///< whether the points of the result are written in single precision
-  std::string note;    ///< a sentence if they are not, although the input has it, or ""
-  std::string warning; ///< a sentence if the points are those of the input instead, or ""
-  std::string moved;   ///< a sentence if the surface has moved although it was to stay, or ""
+  std::string note;    ///< a sentence if they are not although the input is, or ""
+  std::string warning; ///< a sentence if the input's points are kept instead, or ""
+  std::string moved;   ///< a sentence if the surface has moved unexpectedly, or ""
   std::string summary;
 
   /// Keeps the points of an iteration; drops every second frame when the memory is used up.
   void keep(const IterationState& state, std::size_t coordinates, double megabytes);
 
-  /// The points at a time; those of the input before the first iteration that is kept.
+  /// The points at a time; before the first kept iteration, the input's points.
   std::vector<double> at(double time, const MeshView& input) const;
 };
 }

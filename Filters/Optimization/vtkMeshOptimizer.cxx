@@ -33,15 +33,15 @@ enum Ports
   NumberOfPorts = 3
 };
 
-/// A surface that is to stay may move by this fraction of the diagonal without a warning.
+/// A surface that should not move may move by this fraction of the diagonal without a warning.
 constexpr double LeastSurfaceMotion = 0.001;
 constexpr const char* InvalidRemedy =
   " Free their points (Free Invalid Elements), or choose another Boundary.";
-constexpr const char* FreedRemedy = " Choose another Boundary, or repair them by hand.";
+constexpr const char* FreedRemedy = " Choose another Boundary, or repair them manually.";
 constexpr const char* SurfaceRemedy =
   " Set a Maximum Displacement, or a smaller Feature Angle, to keep it closer.";
 
-// More time steps than this are of no use to an animation.
+// An animation does not benefit from more time steps.
 constexpr int MaximumTimeSteps = 1000;
 }
 
@@ -67,7 +67,7 @@ void vtkMeshOptimizer::AddObjective(int metric, int objectiveTemplate, double we
 {
   try
   {
-    tautline::metricInfo(static_cast<tautline::Metric>(metric)); // throws if there is none
+    tautline::metricInfo(static_cast<tautline::Metric>(metric)); // throws if it does not exist
     if (objectiveTemplate < DEFAULT_TEMPLATE || objectiveTemplate > MAXIMUM || target < IDEAL ||
       target > TENSOR)
     {
@@ -107,7 +107,7 @@ void vtkMeshOptimizer::SetWorstMetric(int metric)
   {
     if (metric != -1 && tautline::missingMetric(metric).empty())
     {
-      tautline::metricInfo(static_cast<tautline::Metric>(metric)); // throws if there is none
+      tautline::metricInfo(static_cast<tautline::Metric>(metric)); // throws if it does not exist
     }
   }
   catch (const std::exception& error)
@@ -277,7 +277,7 @@ int vtkMeshOptimizer::EffectiveIterations()
 //------------------------------------------------------------------------------
 std::vector<double> vtkMeshOptimizer::TimeSteps()
 {
-  // How many there are is known after the run only; until then the last ones repeat the result.
+  // Their number is known only after the run; until then the last ones repeat the result.
   const int last = this->LastIteration < 0 ? this->EffectiveIterations() : this->LastIteration;
   const int step = 1 + (last - 1) / MaximumTimeSteps;
   std::vector<double> steps;
@@ -317,7 +317,7 @@ int vtkMeshOptimizer::RequestInformation(
 int vtkMeshOptimizer::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
 {
-  // The time requested is an iteration, which has no meaning upstream.
+  // The requested time is an iteration, which has no meaning upstream.
   for (int port = 0; this->Animation && port < NumberOfInputPorts; ++port)
   {
     for (int i = 0; i < inputVector[port]->GetNumberOfInformationObjects(); ++i)
@@ -335,7 +335,7 @@ vtkTypeBool vtkMeshOptimizer::ProcessRequest(
 {
   if (request->Has(vtkDemandDrivenPipeline::REQUEST_DATA()))
   {
-    // The data of this process, before any are put together.
+    // The data of this process, before they are gathered.
     std::vector<vtkDataObject*> data;
     for (int port = 0; port < NumberOfInputPorts; ++port)
     {
@@ -501,15 +501,15 @@ std::unique_ptr<tautline::CurvedMotion> vtkMeshOptimizer::MakeCurved(
   }
   if (this->ReproducibleOrder)
   {
-    throw tautline::Error("Curved cells have no reproducible order of several processes: switch "
-                          "Reproducible Order off.");
+    throw tautline::Error("Curved cells do not support the reproducible order of several "
+                          "processes: switch Reproducible Order off.");
   }
   return std::make_unique<tautline::CurvedMotion>(
     block, this->Threads, this->MergeCoincidentPoints);
 }
 
 //------------------------------------------------------------------------------
-/// Lets the options report the iterations of a run, which outlives them.
+/// Makes the options report the iterations of a run, which must outlive them.
 void vtkMeshOptimizer::Observe(
   tautline::OptimizerRun& run, int block, vtkIdType coordinates, tautline::OptimizeOptions& options)
 {
@@ -595,7 +595,7 @@ void vtkMeshOptimizer::Optimize(const tautline::OptimizerSettings& settings,
   std::string qualities;
   if (!done && !ofResult)
   {
-    // The summary is that of the result, also if an iteration before it is shown.
+    // The summary describes the result, even if an earlier iteration is shown.
     tautline::TableRows rows;
     qualities = tautline::addBeforeAfter(
       mesh, run.result.points, metrics, {}, this->Threads, block.name, block.output, rows);
@@ -603,7 +603,7 @@ void vtkMeshOptimizer::Optimize(const tautline::OptimizerSettings& settings,
   const tautline::VerifiedElements known =
     ofResult ? std::move(run.result.elements) : tautline::VerifiedElements();
   run.result.elements = {};
-  tautline::TableRows unused; // tables of several processes would be joined
+  tautline::TableRows unused; // otherwise tables of several processes would be joined
   const std::string shown = tautline::addBeforeAfter(mesh, points, metrics, known, this->Threads,
     block.name, block.output, this->IsFirst() ? statistics : unused);
   qualities = qualities.empty() ? shown : qualities;
@@ -615,7 +615,7 @@ void vtkMeshOptimizer::Optimize(const tautline::OptimizerSettings& settings,
   if (!done)
   {
     const double diagonal = block.input->GetLength();
-    // Without a tolerance any distance is allowed.
+    // Without a tolerance, any distance is allowed.
     const bool stays = settings.boundary.motion != tautline::BoundaryMotion::Free &&
       !settings.boundary.geometry && settings.boundary.surfaceTolerance > 0;
     const double allowed =
@@ -646,8 +646,8 @@ void vtkMeshOptimizer::ImproveFaces(const tautline::OptimizerSettings& settings,
   using namespace tautline;
   if (this->Animation || this->WorksOnPieces())
   {
-    throw Error("The preset Finite volumes has no animation and no reproducible order of several "
-                "processes: switch them off.");
+    throw Error("The preset Finite volumes does not support an animation or the reproducible order "
+                "of several processes: switch them off.");
   }
   PolyhedralMesh mesh(block, this->Threads);
   ImproveFacesOptions options;
@@ -705,7 +705,7 @@ bool vtkMeshOptimizer::TakesPieces(vtkInformationVector** inputs)
 {
   const auto onAny = [](bool here) { return tautline::minimumOverProcesses(here ? 0 : 1) == 0; };
   this->InputsChanged = onAny(this->InputsChanged);
-  // What needs the whole mesh is not divided first.
+  // A mesh that must be gathered is not redistributed first.
   tautline::OptimizerSettings settings = this->GetSettings();
   settings.boundary.geometry = vtkDataObject::GetData(inputs[tautline::OptimizerPorts::Geometry]);
   vtkDataObject* input = vtkDataObject::GetData(inputs[MeshPort]);

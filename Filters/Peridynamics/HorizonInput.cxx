@@ -40,18 +40,18 @@ HorizonInput::HorizonInput(
   {
     if (block.type != CellType::Triangle && block.count > 0)
     {
-      throw Error("the mesh has " + std::to_string(block.count) + " cells that are no triangles (" +
-        topology(block.type).name +
-        "): run Tetrahedralize first, which cuts them into triangles, or for a volume take a slice "
-        "or its surface");
+      throw Error("the mesh has " + std::to_string(block.count) +
+        " cells that are not triangles (" + topology(block.type).name +
+        "): run Tetrahedralize first to cut them into triangles; for a volume, use a slice or its "
+        "surface");
     }
     triangles = block.type == CellType::Triangle ? &block : triangles;
   }
   if (mesh.higherOrderCells() > 0)
   {
     throw Error("the mesh has " + std::to_string(mesh.higherOrderCells()) +
-      " curved cells: nonlocal models are on linear triangles here. Run Curve Mesh with order 1 "
-      "first, or Tessellate, which follows the curves");
+      " curved cells: nonlocal models require linear triangles. Run Curve Mesh with order 1 first, "
+      "or Tessellate to follow the curves");
   }
   if (!triangles || triangles->count == 0)
   {
@@ -59,9 +59,9 @@ HorizonInput::HorizonInput(
   }
   if (mesh.dimension() != Dimension::Planar)
   {
-    throw Error("the triangles do not lie in a plane: nonlocal models are for planar meshes here");
+    throw Error("the triangles do not lie in a plane: nonlocal models require planar meshes");
   }
-  const unsigned char* ghosts = adapter.ghostCells(); // copies, where the pieces are all here
+  const unsigned char* ghosts = adapter.ghostCells(); // copies, if all pieces are here
   if (ghosts && countForeignCells(mesh, ghosts) > 0)
   {
     throw Error(

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file HorizonInput.h
- * @brief A vtkDataSet of planar triangles as the kernel's HorizonMesh, and back.
+ * @brief Converts a vtkDataSet of planar triangles to the kernel's HorizonMesh, and back.
  */
 #ifndef tautline_HorizonInput_h
 #define tautline_HorizonInput_h
@@ -23,22 +23,22 @@ class vtkInformation;
 
 namespace tautline
 {
-/// A plane in space, with coordinates in it.
+/// A plane in space, with a coordinate system.
 class HorizonPlane
 {
 public:
   HorizonPlane() = default;
-  /// @param place in the plane
+  /// @param place a position in the plane
   HorizonPlane(const MeshSpace& space, const Vec3& place)
     : Frame(space.frame)
     , Offset(dot(place, space.normal) * space.normal)
   {
   }
-  /// A place in the plane, in space.
+  /// The position in space of a point of the plane.
   Vec3 lift(double x, double y) const { return this->liftVector(x, y) + this->Offset; }
-  /// A direction in the plane, in space.
+  /// The direction in space of a vector in the plane.
   Vec3 liftVector(double x, double y) const { return x * this->Frame[0] + y * this->Frame[1]; }
-  /// Coordinates in the plane of a point or, without the plane's place, of a direction in space.
+  /// In-plane coordinates of a point or, without the plane's position, of a direction in space.
   std::array<double, 2> project(const Vec3& p) const
   {
     return { dot(p, this->Frame[0]), dot(p, this->Frame[1]) };
@@ -53,27 +53,27 @@ class HorizonInput : public HorizonPlane
 {
 public:
   /**
-   * @brief Takes the triangles of a planar mesh; points keep their numbers.
+   * @brief Takes the triangles of a planar mesh; points keep their indices.
    *
-   * Vertices and lines are left out; other cells, surfaces in space and an input without triangles
-   * throw Error, and so do duplicate cells.
+   * Vertices and lines are left out. Throws Error for other cells, surfaces in space, an input
+   * without triangles and duplicate cells.
    * @param region cell array, may be null; @param layerValue its value in the interaction layer
-   * @param mergePoints whether coincident points on seams are one; then triangles have their
-   * representatives, and the other points are of no triangle
+   * @param mergePoints whether coincident points on seams are one; triangles then use their
+   * representatives, and the other points belong to no triangle
    */
   HorizonInput(
     vtkDataSet* input, vtkDataArray* region, double layerValue, bool mergePoints, int threads);
 
   const HorizonMesh& mesh() const { return this->Mesh; }
-  /// Marks the points where the continuous linear basis is given: those where the array is not 0.
+  /// Marks the points where the continuous linear basis is given: where the array is not 0.
   void setGivenPoints(vtkDataArray* array);
-  /// Gives points that were merged the values of their representatives.
+  /// Gives merged points the values of their representatives.
   void spread(vtkDataArray* ofPoints) const;
   /// Remarks for the user on coincident points, as sentences, or "".
   const std::string& notice() const { return this->Notice; }
-  /// One per point, see CoincidentPoints; empty if no points are one.
+  /// One per point, see CoincidentPoints; empty if no points are merged.
   const std::vector<Index>& representative() const { return this->Representative; }
-  /// The cell a triangle is.
+  /// The cell of a triangle.
   vtkIdType cell(Index triangle) const { return this->Cells[static_cast<std::size_t>(triangle)]; }
 
 private:
@@ -84,15 +84,15 @@ private:
 };
 
 /**
- * @brief The mesh in a data object: a data set itself; the data sets of composite data put together
- * to one unstructured grid, with the arrays that all of them have. Never null.
+ * @brief The mesh in a data object: a data set itself, or the data sets of composite data joined
+ * into one unstructured grid, with the arrays that all of them have. Never null.
  */
 vtkSmartPointer<vtkDataSet> wholeMesh(vtkDataObject* input);
 
 /**
- * @brief The array an information of SetInputArrayToProcess names, or null if it names none.
+ * @brief The array named by the information of SetInputArrayToProcess, or null if it names none.
  *
- * Throws Error if the input has no such array. @param onPoints set where it is
+ * Throws Error if the input has no such array. @param onPoints set to its association
  */
 vtkDataArray* chosenArray(
   vtkInformation* choice, vtkDataSet* input, const char* purpose, bool& onPoints);

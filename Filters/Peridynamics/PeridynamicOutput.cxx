@@ -22,7 +22,8 @@ namespace tautline
 {
 namespace
 {
-/// Where a function's values go: a tuple of an array on points or cells, and the first component.
+/// The destination of a function's values: a tuple of a point or cell array, and the first
+/// component.
 struct Place
 {
   vtkIdType tuple;
@@ -91,7 +92,7 @@ std::vector<double> tupleOf(
   return { p[0], p[1] };
 }
 
-/// A column of one row.
+/// A column with one row.
 template <class Array, class Value>
 void addColumn(const char* name, Value value, vtkTable* table)
 {
@@ -224,8 +225,8 @@ std::vector<double> onFunctions(const HorizonInput& input, PeridynamicBasis basi
     if (!arrayOnPoints)
     {
       throw Error("the array '" + std::string(array->GetName()) +
-        "' is on cells; the continuous linear basis needs one on points: run Cell Data to Point "
-        "Data");
+        "' is a cell array; the continuous linear basis needs a point array: run Cell Data to "
+        "Point Data");
     }
     for (Index i = 0; i < mesh.numberOfPoints(); ++i)
     {

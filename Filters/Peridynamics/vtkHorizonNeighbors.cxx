@@ -65,7 +65,7 @@ void fillCircle(const tautline::HorizonInput& taken, const Disc& disc, vtkPolyDa
   circle->SetLines(line);
 }
 
-/// Triangles with cell arrays, for an output.
+/// Triangles with cell arrays for an output.
 class TriangleCollector
 {
 public:
@@ -84,7 +84,7 @@ public:
     this->Ids->InsertNextValue(cell);
   }
 
-  /// Areas of a triangle within the disc: exact, and by chords.
+  /// Areas of a triangle within the disc: exact and approximated by chords.
   void addAreas(double exact, double chord)
   {
     this->Area->InsertNextValue(exact);
@@ -127,7 +127,7 @@ bool isNegligible(const tautline::DiscIntersection& met, const Disc& disc)
   return met.exactArea <= NegligibleArea * disc.radius * disc.radius;
 }
 
-/// The triangles that meet the disc, and the triangles that replace their parts in it.
+/// The triangles that intersect the disc, and the triangles that replace their parts in it.
 void collectTriangles(const tautline::HorizonInput& taken, const Disc& disc,
   TriangleCollector& triangles, TriangleCollector& pieces)
 {
@@ -186,7 +186,7 @@ vtkHorizonNeighbors::~vtkHorizonNeighbors() = default;
 //------------------------------------------------------------------------------
 int vtkHorizonNeighbors::FillInputPortInformation(int, vtkInformation* info)
 {
-  // The composite type first: its data sets are one mesh.
+  // The composite type comes first: its data sets form one mesh.
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
   info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
   return 1;
@@ -222,7 +222,7 @@ int vtkHorizonNeighbors::RequestData(
     const tautline::ProgressStep progress(this, 0.0, 1.0);
     Disc disc = { {}, this->Horizon };
     const tautline::Vec3 center = { this->Center[0], this->Center[1], this->Center[2] };
-    const tautline::HorizonInput taken(input, nullptr, 0.0, false, 0); // of places only
+    const tautline::HorizonInput taken(input, nullptr, 0.0, false, 0); // for the geometry only
     disc.center = taken.project(center);
     fillCircle(taken, disc, circle);
     TriangleCollector met(true), chords(false);
@@ -247,7 +247,7 @@ void vtkHorizonNeighbors::CheckHorizon()
 {
   if (!(this->Horizon > 0.0) || !std::isfinite(this->Horizon))
   {
-    throw tautline::Error("the horizon has to be above 0");
+    throw tautline::Error("the horizon must be above 0");
   }
   using tautline::LargestExtent;
   using tautline::SmallestExtent;
@@ -255,8 +255,8 @@ void vtkHorizonNeighbors::CheckHorizon()
     this->Center, this->Center + 3, [](double x) { return std::abs(x) <= LargestExtent; });
   if (!near || this->Horizon < SmallestExtent || this->Horizon > LargestExtent)
   {
-    throw tautline::Error("the horizon has to be between 5e-20 and 2e19, and the center within "
-                          "2e19 of the origin: scale the mesh first (filter Transform)");
+    throw tautline::Error("the horizon must be between 5e-20 and 2e19, and the center within 2e19 "
+                          "of the origin: scale the mesh first (filter Transform)");
   }
 }
 

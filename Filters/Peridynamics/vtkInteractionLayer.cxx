@@ -33,7 +33,7 @@ namespace
 constexpr const char* ReferenceArray = "Reference";
 constexpr int DomainValue = 1, LayerValue = 2;
 
-/// Adds copies of arrays: `count` rows, row `from(i)` of the input as row i, zeros where that is
+/// Adds copies of arrays with `count` rows: row i is row `from(i)` of the input, or zero if that is
 /// negative.
 void passData(vtkDataSetAttributes* input, vtkDataSetAttributes* output, vtkIdType count,
   const std::function<vtkIdType(vtkIdType)>& from)
@@ -71,7 +71,7 @@ vtkInteractionLayer::~vtkInteractionLayer() = default;
 //------------------------------------------------------------------------------
 int vtkInteractionLayer::FillInputPortInformation(int, vtkInformation* info)
 {
-  // The composite type first: its data sets are one mesh.
+  // The composite type comes first: its data sets form one mesh.
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
   info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
   return 1;
@@ -149,7 +149,7 @@ int vtkInteractionLayer::RequestData(
     for (vtkDataSetAttributes* data :
       std::initializer_list<vtkDataSetAttributes*>{ output->GetPointData(), output->GetCellData() })
     {
-      data->RemoveArray(vtkDataSetAttributes::GhostArrayName()); // there are no ghosts any more
+      data->RemoveArray(vtkDataSetAttributes::GhostArrayName()); // there are no ghosts anymore
     }
     output->GetCellData()->AddArray(reference);
     output->GetCellData()->SetActiveScalars(ReferenceArray);

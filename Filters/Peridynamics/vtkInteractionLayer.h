@@ -1,33 +1,33 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkInteractionLayer
- * @brief Puts an interaction layer of triangles around a planar mesh, for the volume constraint of
+ * @brief Adds an interaction layer of triangles around a planar mesh, for the volume constraint of
  * nonlocal models.
  *
- * A nonlocal (peridynamic) problem is given its solution not on the boundary but in a region around
- * the domain that is as wide as the horizon (dissertation section 4.2, Figure 4.3). This filter
- * adds that region: outside the mesh and in its holes, up to Width from it. The interaction layer
- * has the edges and points of the boundary.
+ * In a nonlocal (peridynamic) problem the solution is prescribed not on the boundary but in a
+ * region around the domain that is as wide as the horizon (dissertation section 4.2, Figure 4.3).
+ * This filter adds this region: outside the mesh and in its holes, up to a distance of Width. The
+ * interaction layer shares the edges and points of the boundary.
  *
  * @par Input:
- * Any vtkDataSet of triangles in a plane. Other cells but vertices and lines are refused. The data
- * sets of composite data are one mesh.
+ * Any vtkDataSet of triangles in a plane. Other cells, except vertices and lines, are not
+ * supported. The data sets of composite data form one mesh.
  *
  * @par Output:
- * vtkUnstructuredGrid: the triangles of the input, in their order, then those of the interaction
- * layer. Points of the input come first and keep their numbers; of coincident points that are one,
- * cells have the one with the smallest number. Point and cell data of the input
- * pass, with zeros in the interaction layer. The cell array `Reference` (int) is 1 in the domain, 2
- * in the interaction layer: vtkPeridynamicStiffness takes it.
+ * vtkUnstructuredGrid: the triangles of the input, in their order, then the triangles of the
+ * interaction layer. Points of the input come first and keep their indices; cells use the merged
+ * point with the smallest index. Point and cell data of the input are passed on, with zeros in the
+ * interaction layer. The cell array `Reference` (int) is 1 in the domain and 2 in the interaction
+ * layer, as required by vtkPeridynamicStiffness.
  *
  * @par Limitations:
- * Elements of the interaction layer are about equally large (ElementSize). Where the boundary's
- * edges are much longer or shorter than that, elements next to it are flat, which does not affect
- * the matrix in exact discretization.
+ * Elements of the interaction layer have about equal size (ElementSize). If the boundary's edges
+ * are much longer or shorter, elements next to it are flat, which does not affect the matrix in the
+ * exact discretization.
  *
  * @par Several processes:
- * The first process has the mesh while it computes; each gets its piece, without ghost cells, and
- * the triangles of the layer next to it.
+ * The mesh is gathered on the first process; each process gets back its piece, without ghost cells,
+ * and the adjacent triangles of the layer.
  *
  * @par Example:
  * @code
@@ -59,7 +59,7 @@ public:
 
   ///@{
   /**
-   * Whether points with the same coordinates on edges that match are treated as one, as on the
+   * Whether to treat points with the same coordinates on matching edges as one, for example on the
    * seams of a mesh in pieces. The default is on. See tautline/Mesh/CoincidentPoints.h.
    */
   vtkSetMacro(MergeCoincidentPoints, bool);
@@ -77,8 +77,8 @@ public:
 
   ///@{
   /**
-   * Edge of the interaction layer's triangles; 0, the default, is the mean length of the boundary's
-   * edges.
+   * Edge length of the interaction layer's triangles; 0, the default, stands for the mean length of
+   * the boundary's edges.
    */
   vtkSetMacro(ElementSize, double);
   vtkGetMacro(ElementSize, double);
@@ -86,7 +86,7 @@ public:
 
   ///@{
   /**
-   * Number of threads; 0, the default, is all cores. The result does not depend on it.
+   * Number of threads; 0, the default, stands for all cores. The result does not depend on it.
    */
   vtkTautlineSetRangeMacro(Threads, int, 0, 1024);
   vtkGetMacro(Threads, int);
@@ -94,8 +94,8 @@ public:
 
   ///@{
   /**
-   * Seconds for an execution, at least 0; 0 is no limit. After it the execution ends with an error.
-   * The default is 600.
+   * Time limit of an execution in seconds, at least 0; 0 means no limit. After it the execution
+   * ends with an error. The default is 600.
    */
   vtkTautlineSetRangeMacro(TimeLimit, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(TimeLimit, double);

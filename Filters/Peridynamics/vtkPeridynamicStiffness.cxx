@@ -46,7 +46,7 @@ enum Arrays
 };
 constexpr const char* DefaultRegion = "Reference";
 
-// Fractions of the progress: until the matrix is there, and until its eigenvalues are.
+// Fractions of the progress: after the matrix, and after its eigenvalues.
 constexpr double AssemblyShare = 0.7, SpectrumShare = 0.9;
 constexpr double MebiByte = 1048576.0;
 constexpr double SolverTolerance = 1e-10; // relative residual of the solution
@@ -98,7 +98,7 @@ int vtkPeridynamicStiffness::RequestDataObject(
 {
   const int succeeded = this->Superclass::RequestDataObject(request, inputVector, outputVector);
   vtkInformation* info = outputVector->GetInformationObject(MeshPort);
-  // The data sets of composite data become one mesh.
+  // The data sets of composite data form one mesh.
   if (succeeded && !vtkDataSet::GetData(info))
   {
     info->Set(vtkDataObject::DATA_OBJECT(), vtkSmartPointer<vtkUnstructuredGrid>::New());
@@ -110,7 +110,7 @@ int vtkPeridynamicStiffness::RequestDataObject(
 int vtkPeridynamicStiffness::RequestInformation(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
 {
-  // The extent of the picture is known after the assembly: announced is the maximum.
+  // The extent of the picture is known only after the assembly; the maximum is announced.
   const int last = std::max(this->SparsityPixels, 1) - 1;
   const int extent[6] = { 0, last, 0, last, 0, 0 };
   outputVector->GetInformationObject(SparsityPort)
@@ -168,7 +168,7 @@ int vtkPeridynamicStiffness::RequestData(
   picture->Initialize();
   if (this->SparsityPixels == 0)
   {
-    // The pipeline would execute again for what does not have the extent announced.
+    // The pipeline would execute again for an image without the announced extent.
     picture->SetExtent(0, 0, 0, 0, 0, 0);
   }
   return this->Attempt(outputVector, "choose a smaller horizon or a coarser mesh",
@@ -202,7 +202,7 @@ vtkDataArray* vtkPeridynamicStiffness::GetRegion(vtkDataSet* input)
 {
   vtkInformation* choice = this->GetInputArrayInformation(RegionArray);
   const char* name = choice->Get(vtkDataObject::FIELD_NAME());
-  // The default is an array that the input need not have.
+  // The default array may be missing in the input.
   const bool chosen = !name || std::string(name) != DefaultRegion;
   if (!this->Constrained || (!chosen && !input->GetCellData()->GetArray(name)))
   {
@@ -237,7 +237,7 @@ void vtkPeridynamicStiffness::Compute(tautline::Assistants& assistants, vtkDataS
   {
     if (!onPoints)
     {
-      throw tautline::Error("the given points have to be a point array");
+      throw tautline::Error("the given points must be a point array");
     }
     taken.setGivenPoints(points);
   }
@@ -252,7 +252,7 @@ void vtkPeridynamicStiffness::Compute(tautline::Assistants& assistants, vtkDataS
     given = tautline::onFunctions(taken, options.basis, components, array, onPoints);
   }
 
-  // All processes assemble, each a part of the rows.
+  // All processes assemble a part of the rows.
   tautline::RankGroup& group = assistants.call();
   if (group.size() > 1)
   {
@@ -331,7 +331,7 @@ tautline::SolveReport vtkPeridynamicStiffness::SolveSystem(const tautline::Horiz
   this->SolverIterations = static_cast<int>(report.iterations);
   if (!report.converged)
   {
-    vtkWarningMacro("The solution is not converged: its relative residual is " << report.residual);
+    vtkWarningMacro("The solution has not converged: its relative residual is " << report.residual);
   }
   const tautline::PeridynamicResult result = { input, basis, system };
   const std::vector<double>* prescribed = given.empty() ? nullptr : &given;
@@ -368,9 +368,9 @@ void vtkPeridynamicStiffness::Report(const tautline::PeridynamicSystem& system,
     }
     if (!spectrum->converged)
     {
-      text << "\nThe eigenvalues are not converged: error bounds " << spectrum->smallestBound
+      text << "\nThe eigenvalues have not converged: error bounds " << spectrum->smallestBound
            << " and " << spectrum->largestBound << ".";
-      vtkWarningMacro("The eigenvalues are not converged: their error bounds are "
+      vtkWarningMacro("The eigenvalues have not converged: their error bounds are "
         << spectrum->smallestBound << " and " << spectrum->largestBound);
     }
   }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkPeridynamicStiffness
- * @brief The stiffness matrix of a nonlocal (peridynamic) model: its condition number, its rows,
- * its solution.
+ * @brief Assembles the stiffness matrix of a nonlocal (peridynamic) model, and finds its condition
+ * number, properties of its rows and the solution.
  *
  * Assembles the bond-based model of dissertation chapter 4 on a planar triangle mesh with an
  * interaction layer:
@@ -11,51 +11,54 @@
  *     k(r) = r^-p,  s = 1 / delta^(4-p)
  *
  * (4.6), or with another kernel, or the elastic model (4.4)-(4.5) with its tensor kernel, or the
- * linear ordinary state-based model, which has any Poisson's ratio
+ * linear ordinary state-based model, which allows any Poisson's ratio
  * (tautline/Peridynamics/Dilatation.h). The solution is given in the interaction layer, the cells
- * whose region is LayerValue. Two discretizations of the integrals:
- * - EXACT: geometry and singularity of the inner integral are exact; converges; symmetric.
+ * whose region is LayerValue. There are two discretizations of the integrals:
+ * - EXACT: geometry and singularity of the inner integral are exact; convergent and symmetric.
  * - DISSERTATION: the rules of section 4.3. With Rules at TABLES it reproduces Tables 4.1 to 4.3.
  *
- * Extreme eigenvalues are by the Lanczos method, with error bounds; nothing is factorized.
+ * Extreme eigenvalues are computed by the Lanczos method, with error bounds and without a
+ * factorization.
  *
  * @par Input:
- * Any vtkDataSet of triangles in a plane, all of one orientation. vtkInteractionLayer adds an
- * interaction layer; vtkDomainSource's square has one. The data sets of composite data are one
+ * Any vtkDataSet of triangles in a plane, all with the same orientation. vtkInteractionLayer adds
+ * an interaction layer; vtkDomainSource's square has one. The data sets of composite data form one
  * mesh; the output is then a vtkUnstructuredGrid. A mesh in pieces is gathered.
  *
  * @par Input arrays (SetInputArrayToProcess):
- * - 0, region: cell array with one component; cells where it is LayerValue are the interaction
+ * - 0, region: cell array with one component; cells with the value LayerValue form the interaction
  *   layer.
- * - 1, source b: on points or cells, one component (elastic: two or three). None: UniformSource.
- * - 2, given g: in the interaction layer; on points, or with discontinuous bases on cells. None: 0.
+ * - 1, source b: point or cell array, one component (elastic: two or three). None: UniformSource.
+ * - 2, given g in the interaction layer: point array, or cell array for discontinuous bases. None:
+ *   0.
  * - 3, given points: point array, not 0 where the continuous linear basis is given. None: the
- *   points of interaction layer cells.
+ *   points of cells in the interaction layer.
  *
  * @par Output port 0 `Mesh`:
  * The input with arrays on the points (continuous linear basis) or cells (others; the discontinuous
- * linear one has a component per corner): `Unknown` (1 or 0), `Neighbors` (unknown functions a row
- * couples with), `RowSum` (of the unknown part: what of the diagonal goes to the interaction
- * layer), `Diagonal`; `SmallestMode` and `LargestMode`, eigenvectors of norm 1, if ComputeSpectrum;
- * `Solution` if Solve. Elastic vectors have three components per function, in space. If Elastic and
- * Solve, cells have `Dilatation` and `EnergyDensity` of the solution, 0 in the interaction layer.
+ * linear one has a component per corner): `Unknown` (1 or 0), `Neighbors` (unknown functions
+ * coupled with a row), `RowSum` (over the unknowns: the part of the diagonal that belongs to the
+ * interaction layer), `Diagonal`; `SmallestMode` and `LargestMode`, eigenvectors of norm 1, with
+ * ComputeSpectrum; `Solution` with Solve. Elastic vectors have three components per function, in
+ * space. With Elastic and Solve, cells have `Dilatation` and `EnergyDensity` of the solution, 0 in
+ * the interaction layer.
  *
  * @par Output port 1 `Spectrum`:
- * vtkTable of one row: `Condition` (0 where the matrix is not positive definite), `Smallest`,
+ * vtkTable with one row: `Condition` (0 if the matrix is not positive definite), `Smallest`,
  * `Largest`, `SmallestBound`, `LargestBound` (absolute error bounds), `Definite`, `Converged`,
- * `Iterations`, `Rows`, `Nonzeros`, `Asymmetry` (of the dissertation's discretization: norm of the
- * part that is dropped, relative), `LayerDeficit`, `IntegratedPairs` (on several processes those
- * of all, pairs near the planes between them several times), `Memory` (bytes, estimated);
- * of the solution, 0 unless Solve: `SolverIterations`, `SolverResidual` (relative),
- * `SolverConverged`, `PreconditionedCondition` (estimated from the iterations, from below).
+ * `Iterations`, `Rows`, `Nonzeros`, `Asymmetry` (for the dissertation's discretization: relative
+ * norm of the dropped part), `LayerDeficit`, `IntegratedPairs` (the total over several processes,
+ * where pairs near the dividing planes count several times), `Memory` (bytes, estimated); for the
+ * solution, 0 unless Solve: `SolverIterations`, `SolverResidual` (relative), `SolverConverged`,
+ * `PreconditionedCondition` (a lower estimate from the iterations).
  *
  * @par Output port 2 `Sparsity`:
- * vtkImageData with `Entries` per pixel, as Figure 4.2; empty unless SparsityPixels is above 0.
+ * vtkImageData with `Entries` per pixel, as in Figure 4.2; empty unless SparsityPixels is above 0.
  *
  * @par Errors:
- * Whatever tautline::assemblePeridynamics rejects, by name and with the remedy: no interaction
- * layer or too thin a one, an exponent at the singular limit, inverted or degenerate triangles, too
- * little memory, time over.
+ * All input that tautline::assemblePeridynamics rejects, with the remedy: a missing or too thin
+ * interaction layer, an exponent at the singular limit, inverted or degenerate triangles,
+ * insufficient memory, or the time limit.
  *
  * @par Example:
  * @code
@@ -107,7 +110,7 @@ public:
 
   ///@{
   /**
-   * Whether points with the same coordinates on edges that match are treated as one, as on the
+   * Whether to treat points with the same coordinates on matching edges as one, for example on the
    * seams of a mesh in pieces. The default is on. See tautline/Mesh/CoincidentPoints.h.
    */
   vtkSetMacro(MergeCoincidentPoints, bool);
@@ -137,7 +140,7 @@ public:
 
   ///@{
   /**
-   * The kernel's shape. The default is POWER (0).
+   * The shape of the kernel. The default is POWER (0).
    */
   vtkTautlineSetRangeMacro(Kernel, int, POWER, TABLE);
   vtkGetMacro(Kernel, int);
@@ -145,8 +148,8 @@ public:
 
   ///@{
   /**
-   * Exponent p of the power, from 0 to below 4 (continuous linear basis) or 3 (others); elastic: 6
-   * or 5. The kernel is integrable below 2 (4: elastic). The default is 1.
+   * Exponent p of the power, from 0 to below 4 (continuous linear basis) or 3 (other bases); for
+   * the elastic model, 6 or 5. The kernel is integrable below 2 (elastic: 4). The default is 1.
    */
   vtkSetMacro(Exponent, double);
   vtkGetMacro(Exponent, double);
@@ -162,7 +165,7 @@ public:
 
   ///@{
   /**
-   * Values of the tabulated kernel: two or more, not negative, the first at r = 0, the last at
+   * Values of the tabulated kernel: at least two, not negative, the first at r = 0, the last at
    * delta.
    */
   void AddKernelValue(double value);
@@ -186,7 +189,8 @@ public:
 
   ///@{
   /**
-   * 0, the default: diffusion, (4.6). 1: linearized elasticity with the tensor kernel of (4.4).
+   * The model: 0, the default, diffusion (4.6); 1, linearized elasticity with the tensor kernel of
+   * (4.4).
    */
   vtkSetMacro(Elastic, bool);
   vtkGetMacro(Elastic, bool);
@@ -195,7 +199,7 @@ public:
 
   ///@{
   /**
-   * Of the elastic model: 0, the default: bond-based. 1: linear, ordinary state-based; it needs an
+   * The elastic model: 0, the default, bond-based; 1, linear ordinary state-based, which needs an
    * interaction layer of twice the horizon and the exact discretization.
    */
   vtkSetMacro(StateBased, bool);
@@ -205,8 +209,8 @@ public:
 
   ///@{
   /**
-   * Poisson's ratio of the state-based model, above -1 and below 0.5. At the default, 0.25, it is
-   * in plane strain the bond-based one.
+   * Poisson's ratio of the state-based model, above -1 and below 0.5. With the default, 0.25, it
+   * equals the bond-based model in plane strain.
    */
   vtkSetMacro(PoissonRatio, double);
   vtkGetMacro(PoissonRatio, double);
@@ -214,7 +218,7 @@ public:
 
   ///@{
   /**
-   * Of the state-based model: 0, the default: plane strain. 1: plane stress, in which the
+   * For the state-based model: 0, the default, plane strain; 1, plane stress, in which the
    * bond-based model has a Poisson's ratio of 1/3.
    */
   vtkSetMacro(PlaneStress, bool);
@@ -224,8 +228,8 @@ public:
 
   ///@{
   /**
-   * Whether triangles do not interact where the mesh ends between them, as across a hole or a
-   * crack: decided by the segment between their centroids. Has no effect where the
+   * Whether to cut bonds that leave the mesh, for example across a hole or a crack: triangles do
+   * not interact if the segment between their centroids leaves the mesh. Has no effect where the
    * interaction layer is wide enough. The default is true.
    */
   vtkSetMacro(CutBonds, bool);
@@ -248,12 +252,12 @@ public:
   ///@}
 
   /**
-   * Points of the dissertation's rules: outer, inner.
+   * Numbers of points of the dissertation's outer and inner rules.
    */
   enum RuleSets
   {
-    TABLES = 0,  ///< 3 and 1 (linear), 3 and 3 (constant): what its tables were made with
-    LITERAL = 1, ///< 1 and 3: those of its text
+    TABLES = 0,  ///< 3 and 1 (linear), 3 and 3 (constant), as used for its tables
+    LITERAL = 1, ///< 1 and 3, as in its text
     ONE_ONE = 2,
     THREE_THREE = 3,
     THREE_ONE = 4
@@ -261,7 +265,7 @@ public:
 
   ///@{
   /**
-   * The rules, in the dissertation's discretization. The default is TABLES (0).
+   * The rules of the dissertation's discretization. The default is TABLES (0).
    */
   vtkTautlineSetRangeMacro(Rules, int, TABLES, THREE_ONE);
   vtkGetMacro(Rules, int);
@@ -269,10 +273,10 @@ public:
 
   ///@{
   /**
-   * How far the integral over each pair of triangles is refined in exact discretization, 1e-10 to
+   * Tolerance of the integral over each pair of triangles in the exact discretization, 1e-10 to
    * 0.1. The matrix has larger errors, relative to its largest entry: at most 3e-3, 5e-4 and 1e-4
-   * for 1e-3, 1e-5 and 1e-7 where the horizon is 1.5 elements, 7e-3, 8e-4 and 3e-4 where it is 0.3,
-   * see tautline::PeridynamicOptions. The default is 1e-5.
+   * for 1e-3, 1e-5 and 1e-7 if the horizon is 1.5 elements, and 7e-3, 8e-4 and 3e-4 if it is 0.3
+   * elements, see tautline::PeridynamicOptions. The default is 1e-5.
    */
   vtkSetMacro(Tolerance, double);
   vtkGetMacro(Tolerance, double);
@@ -280,8 +284,8 @@ public:
 
   ///@{
   /**
-   * Value of the region array in the interaction layer. The default is 2, as vtkInteractionLayer
-   * and vtkDomainSource give it.
+   * Value of the region array in the interaction layer. The default is 2, as used by
+   * vtkInteractionLayer and vtkDomainSource.
    */
   vtkSetMacro(LayerValue, double);
   vtkGetMacro(LayerValue, double);
@@ -289,8 +293,8 @@ public:
 
   ///@{
   /**
-   * Whether the solution is given in the interaction layer. If not, every function is unknown, and
-   * constants are in the null space. The default is true.
+   * Whether the solution is given in the interaction layer. Otherwise every function is unknown,
+   * and constants are in the null space. The default is true.
    */
   vtkSetMacro(Constrained, bool);
   vtkGetMacro(Constrained, bool);
@@ -299,7 +303,7 @@ public:
 
   ///@{
   /**
-   * Whether an interaction layer narrower than the horizon is accepted; what lies beyond the mesh
+   * Whether to accept an interaction layer narrower than the horizon; the region beyond the mesh
    * then does not count. The default is false.
    */
   vtkSetMacro(AllowThinLayer, bool);
@@ -318,7 +322,7 @@ public:
 
   ///@{
   /**
-   * Relative error accepted of the eigenvalues, 1e-14 to 0.1. The default is 1e-8.
+   * Relative tolerance of the eigenvalues, 1e-14 to 0.1. The default is 1e-8.
    */
   vtkTautlineSetRangeMacro(SpectrumTolerance, double, 1e-14, 0.1);
   vtkGetMacro(SpectrumTolerance, double);
@@ -334,7 +338,7 @@ public:
   ///@}
 
   /**
-   * Preconditioners of the solution, see tautline/Peridynamics/PeridynamicSolve.h.
+   * Preconditioners for the solution, see tautline/Peridynamics/PeridynamicSolve.h.
    */
   enum Preconditioners
   {
@@ -345,8 +349,8 @@ public:
 
   ///@{
   /**
-   * The preconditioner of the conjugate gradients that find the solution. Those other than JACOBI
-   * need values that are given in the interaction layer. The default is JACOBI (0).
+   * The preconditioner of the conjugate gradient method for the solution. Preconditioners other
+   * than JACOBI need given values in the interaction layer. The default is JACOBI (0).
    */
   vtkTautlineSetRangeMacro(Preconditioner, int, JACOBI, TWO_LEVEL);
   vtkGetMacro(Preconditioner, int);
@@ -354,8 +358,8 @@ public:
 
   ///@{
   /**
-   * The source b where no array is given; elastic: of its first component, the other is 0. The
-   * default is 1.
+   * The source b if no array is given; for the elastic model its first component (the other is 0).
+   * The default is 1.
    */
   vtkSetMacro(UniformSource, double);
   vtkGetMacro(UniformSource, double);
@@ -363,7 +367,7 @@ public:
 
   ///@{
   /**
-   * Largest number of rows of the picture of the sparsity pattern, 0 for none, up to 4096. The
+   * Largest number of rows of the picture of the sparsity pattern, up to 4096; 0 for none. The
    * default is 0.
    */
   vtkTautlineSetRangeMacro(SparsityPixels, int, 0, 4096);
@@ -372,7 +376,7 @@ public:
 
   ///@{
   /**
-   * Memory the matrix may take, in MiB; 0, the default, is what the machine has free.
+   * Memory limit of the matrix in MiB; 0, the default, stands for the free memory of the machine.
    */
   vtkTautlineSetRangeMacro(MemoryLimit, double, 0.0, 1e12);
   vtkGetMacro(MemoryLimit, double);
@@ -413,7 +417,7 @@ private:
   vtkPeridynamicStiffness(const vtkPeridynamicStiffness&) = delete;
   void operator=(const vtkPeridynamicStiffness&) = delete;
 
-  /// What the other processes do while the first one is in RequestData(), in step with it.
+  /// The work of the other processes in step with the first, which is in RequestData().
   void Assist();
 
   tautline::PeridynamicOptions GetOptions();
@@ -427,10 +431,10 @@ private:
     const tautline::PeridynamicSystem& system, const std::vector<double>& given, vtkDataSet* data,
     vtkDataSet* output);
   bool ProceedWithin(double from, double to, double fraction);
-  /// The eigenvalues and the solution: those found so far.
+  /// The best result has the eigenvalues and the solution found so far.
   bool KeepsBest() const override { return this->Assembled; }
 
-  std::unique_ptr<tautline::RankGroup> Group; ///< of several processes, in an execution
+  std::unique_ptr<tautline::RankGroup> Group; ///< for several processes, during an execution
   bool MergeCoincidentPoints = true;
   double Horizon = 0.2;
   int Kernel = POWER;

@@ -40,7 +40,8 @@ Index CurvedPerturbation::finish(Perturbation& result, bool keepValid) const
 }
 
 //------------------------------------------------------------------------------
-/// Halves the motions of flagged corners; in the end they go back. @return whether any moved
+/// Halves the displacements of flagged corners; finally they return to their original positions.
+/// @return whether any moved
 bool CurvedPerturbation::retreat(const std::vector<unsigned char>& around,
   std::vector<unsigned char>& times, std::vector<double>& corners, Perturbation& result) const
 {
@@ -101,8 +102,7 @@ std::vector<signed char> CurvedPerturbation::validity(const std::vector<double>&
 }
 
 //------------------------------------------------------------------------------
-/// The corners of the cells around those that are no longer valid: their motions move the nodes of
-/// these.
+/// The corners of the cells around invalidated cells: their motions move the nodes of these cells.
 std::vector<unsigned char> CurvedPerturbation::aroundWorse(
   const std::vector<signed char>& before, const std::vector<signed char>& after) const
 {

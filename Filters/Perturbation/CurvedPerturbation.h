@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CurvedPerturbation.h
- * @brief Curved cells whose corners were perturbed as those of linear cells.
+ * @brief Completes the perturbation of curved cells whose corners were perturbed as in linear
+ * cells.
  */
 #ifndef tautline_CurvedPerturbation_h
 #define tautline_CurvedPerturbation_h
@@ -13,7 +14,7 @@ namespace tautline
 {
 /**
  * @class tautline::CurvedPerturbation
- * @brief Lets the nodes between corners follow, but for fixed ones and those on the boundary, and
+ * @brief Makes the nodes between corners follow, except fixed nodes and nodes on the boundary, and
  * keeps valid cells valid.
  */
 class CurvedPerturbation
@@ -30,10 +31,10 @@ public:
 
   /**
    * @brief Places the nodes between the corners, and counts the inverted elements again.
-   * @param result its points in the coordinates of the input
-   * @param keepValid whether corners retreat towards where they were until each cell that was valid
-   * is valid
-   * @return corners that have retreated
+   * @param result with points in the coordinates of the input
+   * @param keepValid whether corners retreat toward their original positions until each originally
+   * valid cell is valid
+   * @return the number of corners that have retreated
    */
   Index finish(Perturbation& result, bool keepValid) const;
 

@@ -34,7 +34,7 @@ namespace
 {
 constexpr int FixedArray = 0;
 
-/// Marks the points of the ghost cells and those where the chosen array, if any, is not 0.
+/// Marks the points of ghost cells and the points where the chosen array, if any, is not 0.
 std::vector<unsigned char> fixedPoints(
   vtkDataArray* chosen, const tautline::MeshAdapter& adapter, vtkIdType count)
 {
@@ -54,7 +54,7 @@ std::vector<unsigned char> fixedPoints(
   return fixed;
 }
 
-/// The global ids of the points, of points that are one the least; empty without ids.
+/// The global ids of the points (the smallest for merged points); empty without ids.
 std::vector<tautline::Index> pointIds(
   vtkDataSet* input, const std::vector<tautline::Index>& representative)
 {
@@ -76,11 +76,12 @@ std::string describeCurved(const tautline::CurvedMesh& curved, tautline::Index r
 {
   const std::size_t nodes = curved.nodes().points().size();
   std::string text = std::to_string(nodes) +
-    " nodes of curved cells followed their corners; inverted is what is so anywhere in the cell.";
+    " nodes of curved cells followed their corners; a cell counts as inverted if it is inverted at "
+    "any point.";
   if (retreated > 0)
   {
     text += " " + std::to_string(retreated) +
-      " corners moved less than drawn, so that valid curved cells stayed valid.";
+      " corners moved less than drawn so that valid curved cells stayed valid.";
   }
   return text;
 }
@@ -141,7 +142,7 @@ void vtkMeshPerturbation::Perturb(
   {
     return;
   }
-  // Of curved cells the corners move as those of linear ones, and the nodes between follow.
+  // The corners of curved cells move as in linear cells, and the nodes between them follow.
   std::unique_ptr<tautline::CurvedMesh> curved;
   if (tautline::hasCurvedCells(points))
   {

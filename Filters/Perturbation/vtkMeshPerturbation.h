@@ -1,62 +1,62 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkMeshPerturbation
- * @brief Moves interior vertices at random, short of inverting an element or past it.
+ * @brief Moves interior vertices at random, either without inverting elements or past inversion.
  *
- * Makes test meshes: worse than the input by a known amount, but valid; or tangled, with a known
+ * Makes test meshes: valid, but worse than the input by a known amount; or tangled, with a known
  * fraction of inverted elements.
  *
- * A percentage of the vertices inside the mesh is chosen. One after the other, each moves in a
- * random direction by a random fraction (uniform from 0 to Fraction) of the distance at which, in
- * that direction, the first element around it would invert, given where the others are by then.
- * This distance is exact: the determinant of every corner is linear in one vertex. The dissertation
- * asks for "less than half the distance at which element inversion would occur" (section 2.7.2):
- * the default. No element becomes inverted or degenerate, in the precision the output is stored in.
+ * A percentage of the interior vertices is chosen. They move one after the other, each in a random
+ * direction by a random fraction (uniform from 0 to Fraction) of the distance at which the first
+ * adjacent element would invert, given the current positions of the other vertices. This distance
+ * is exact: the determinant of every corner is linear in one vertex. The dissertation uses "less
+ * than half the distance at which element inversion would occur" (section 2.7.2), which is the
+ * default. No element becomes inverted or degenerate, in the precision of the output.
  *
- * With a TangledFraction above 0, interior vertices then go past inversion until that fraction of
+ * With a TangledFraction above 0, interior vertices then move past inversion until this fraction of
  * the elements is inverted. It is reached to the nearest element up to about 0.8 (a mesh with a
- * fixed boundary cannot always be inverted throughout); GetTangledFractionReached() is the fraction
- * that was reached.
+ * fixed boundary cannot always be inverted throughout); see GetTangledFractionReached() for the
+ * fraction reached.
  *
- * Vertices of a planar mesh stay in its plane. Those of a surface in space move in the tangent
- * plane of the elements around them, and so leave the surface by a second-order amount; an element
- * inverts where it turns by 90 degrees from what it was. (Element Quality evaluates one mesh and
- * cannot detect that: a surface triangle always agrees with its own normal. Mind sharp edges: fix
- * their points.)
+ * Vertices of a planar mesh stay in its plane. Vertices of a surface in space move in the tangent
+ * plane of the adjacent elements, and so leave the surface by a second-order amount; an element
+ * counts as inverted if it turns by 90 degrees or more. (Element Quality evaluates a single mesh
+ * and cannot detect this: a surface triangle always agrees with its own normal. Fix the points of
+ * sharp edges.)
  *
- * The result depends on the input, the options and Seed only: not on the number of threads, nor on
- * the random numbers of the system. With one seed, the vertices moved at a lower percentage are
- * among those moved at a higher one.
+ * The result depends only on the input, the options and Seed, not on the number of threads or the
+ * random numbers of the system. With the same seed, the vertices moved at a lower percentage are a
+ * subset of the vertices moved at a higher one.
  *
  * @par Input:
  * Any vtkPointSet: vtkUnstructuredGrid, vtkPolyData, vtkStructuredGrid, ... with triangles,
  * quadrilaterals, tetrahedra, hexahedra, wedges, pyramids. Multiblock data are treated block by
  * block, the partitions of partitioned data as one mesh. A mesh whose elements are all reversed is
  * treated as its mirror image. The points of other cells (lines, polygons, polyhedra, 2D cells in a
- * volume mesh), of ghost cells and of cells with NaN coordinates stay. Elements that are inverted
- * already may stay so, but get no worse neighbours.
+ * volume mesh), of ghost cells and of cells with NaN coordinates stay. Elements that are already
+ * inverted may stay so, but their neighbors do not get worse.
  *
  * @par Input array 0 (optional, SetInputArrayToProcess):
  * A point array with one component. Points where it is not 0 stay.
  *
  * @par Output:
  * The input with other points, in the same precision (integer coordinates become double). Point and
- * cell data pass. The point array `Displacement` (3 components, double) is added: new minus old
- * position.
+ * cell data are passed on. The point array `Displacement` (3 components, double) is added: new
+ * minus old position.
  *
  * @par Curved cells:
- * Corners move as those of linear cells, and the other nodes follow, see
- * tautline/Mesh/FollowingNodes.h; those on the boundary and fixed ones stay. Without a
- * TangledFraction, corners retreat towards where they were until each cell that was valid is valid,
- * certified for the whole cell. So are the numbers of inverted elements. Cells that ElementType
- * does not support are refused.
+ * Corners move as in linear cells, and the other nodes follow, see tautline/Mesh/FollowingNodes.h;
+ * fixed nodes and nodes on the boundary stay. Without a TangledFraction, corners retreat toward
+ * their original positions until each originally valid cell is valid. Validity and the numbers of
+ * inverted elements are certified for the whole cell. Cells that ElementType does not support are
+ * rejected.
  *
  * @par Limitations:
  * Points shared by two blocks are on the boundary of each and stay.
  *
  * @par Several processes:
  * The pieces are gathered on the first process. Random numbers are drawn by the global ids of the
- * points; without ids, by the order of their coordinates: so the points are those of one process.
+ * points; without ids, by the order of their coordinates. The points thus equal the serial result.
  *
  * @par Example:
  * @code
@@ -116,7 +116,7 @@ public:
   ///@{
   /**
    * Fraction of the elements to be inverted in the output, between 0 and 1; inverted elements of
-   * the input count. The default is 0: none is inverted.
+   * the input count. With 0, the default, no element is inverted.
    */
   vtkTautlineSetRangeMacro(TangledFraction, double, 0.0, 1.0);
   vtkGetMacro(TangledFraction, double);
@@ -124,7 +124,7 @@ public:
 
   ///@{
   /**
-   * Any number; another seed gives another mesh. The default is 0.
+   * The seed of the random numbers: any number; another seed gives another mesh. The default is 0.
    */
   vtkSetMacro(Seed, int);
   vtkGetMacro(Seed, int);
@@ -132,8 +132,8 @@ public:
 
   ///@{
   /**
-   * Whether points with the same coordinates on facets that match are treated as one, as on the
-   * seams of a mesh in pieces, and move together. The default is on. See
+   * Whether points with the same coordinates on matching facets, for example on the seams of a mesh
+   * in pieces, are treated as one and move together. The default is on. See
    * tautline/Mesh/CoincidentPoints.h.
    */
   vtkSetMacro(MergeCoincidentPoints, bool);
@@ -143,9 +143,9 @@ public:
 
   ///@{
   /**
-   * Results of the last execution, of all blocks: vertices inside the mesh that were free to move;
-   * those that did; the elements inverted before and after, and the fraction of the elements that
-   * the latter are; the largest displacement.
+   * Results of the last execution, over all blocks: the numbers of movable interior vertices and of
+   * moved vertices; the numbers of elements inverted before and after, and the fraction of elements
+   * inverted after; the largest displacement.
    */
   vtkGetMacro(NumberOfMovablePoints, vtkIdType);
   vtkGetMacro(NumberOfMovedPoints, vtkIdType);

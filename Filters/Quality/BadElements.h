@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BadElements.h
- * @brief Collects the bad elements of volume meshes, which lie inside and are hidden by others.
+ * @brief Collects the bad elements of volume meshes, which may be hidden inside the mesh.
  */
 
 #ifndef tautline_BadElements_h
@@ -27,11 +27,11 @@ class BadElements
 {
 public:
   /**
-   * @brief Adds those of a volume mesh.
+   * @brief Adds the bad elements of a volume mesh.
    * @param output the mesh with the cell arrays of the metrics and, with criteria, `Grade`
    * @param validity a value per cell
-   * @param skip null, or a value per cell: those with 1 are left out
-   * @param metrics whose ranges count
+   * @param skip null, or a value per cell: cells with 1 are left out
+   * @param metrics whose acceptable ranges are used
    */
   void add(vtkDataSet* output, const signed char* validity, const unsigned char* skip,
     const std::vector<Metric>& metrics);

@@ -19,7 +19,7 @@ namespace tautline
 {
 namespace
 {
-/// The JSON that a text is or names.
+/// The JSON text itself, or the contents of the file or preset that the text names.
 std::string criteriaText(const std::string& text)
 {
   const std::size_t first = text.find_first_not_of(" \t\r\n");
@@ -32,7 +32,7 @@ std::string criteriaText(const std::string& text)
   {
     return presetCriteria(text);
   }
-  // Not a directory or a device, which could be read for ever.
+  // Not a directory or a device, which could be read forever.
   std::error_code ignored;
   std::ifstream file;
   if (std::filesystem::is_regular_file(text, ignored))
@@ -54,8 +54,8 @@ std::string criteriaText(const std::string& text)
   return content.str();
 }
 
-/// What to choose if criteria have limits for none of the elements: "" or ", which are for shells;
-/// for solids there are fem, ...".
+/// A suggestion if the criteria have no limits for any of the elements: "" or ", which are for
+/// shells; for solids there are fem, ...".
 std::string otherPresets(const QualityCriteria& criteria)
 {
   const std::string graded = gradedCells(criteria);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class tautline::CriteriaGrader
- * @brief Grades what vtkElementQuality measures by quality criteria, on blocks and processes.
+ * @brief Grades the measurements of vtkElementQuality by quality criteria, over blocks and
+ * processes.
  */
 #ifndef tautline_CriteriaGrader_h
 #define tautline_CriteriaGrader_h
@@ -22,8 +23,8 @@ public:
   /// Without criteria: does nothing.
   CriteriaGrader() = default;
   /**
-   * @param text JSON, the name of a preset, or the name of a file with JSON; "": no criteria.
-   * Throws Error for what is none of these, and for wrong criteria.
+   * @param text JSON, the name of a preset, or the name of a file with JSON; "" for no criteria.
+   * Throws Error for any other text, and for invalid criteria.
    */
   explicit CriteriaGrader(const std::string& text);
 
@@ -32,10 +33,10 @@ public:
   /// The convention of face centers that the criteria state, or "".
   const std::string& convention() const { return this->Criteria.convention; }
 
-  /// These metrics, then those of the criteria that are not among them.
+  /// These metrics, followed by the metrics of the criteria that are not among them.
   std::vector<Metric> withMetrics(std::vector<Metric> metrics) const;
 
-  /// The same of the checks of solvers.
+  /// The same for the checks of solvers.
   std::vector<int> withChecks(std::vector<int> checks) const;
 
   /// Grades the cells of a block by its cell arrays of the metrics and checks; adds the arrays
@@ -43,7 +44,7 @@ public:
   void grade(const Mesh& mesh, const signed char* validity, const unsigned char* uncounted,
     const unsigned char* skip, vtkDataSet* output);
 
-  /// Adds up the processes. Collective; without a controller, nothing.
+  /// Adds up the results of the processes. Collective; does nothing without a controller.
   void gather(vtkMultiProcessController* controller);
 
   /// A row for each criterion.

@@ -58,7 +58,7 @@ void FaceQuality::measure(Metric metric, double* values)
   std::fill_n(values, this->Input->GetNumberOfCells(), 0.0);
   for (std::size_t i = 0; i < this->Adapter->cells().size(); ++i)
   {
-    // Of cells without faces, and where points are not finite.
+    // The value for cells without faces, and if points are not finite.
     values[this->Adapter->cells()[i]] = std::isfinite(found.cells[i]) ? found.cells[i] : 0.0;
   }
   if (!found.faces.empty())
@@ -100,7 +100,7 @@ vtkSmartPointer<vtkPolyData> FaceQuality::faces(bool all) const
   std::vector<Index> chosen;
   for (Index face = 0; face < mesh.faces(); ++face)
   {
-    // What fails as seen from the other piece is not known here.
+    // Failures seen from the other piece are not known here.
     const bool other = mesh.has(face, OnBorder) && mesh.touches(face) && failed[face] && !all;
     if ((mesh.ownsFace(face) && (all || failed[face])) || other)
     {
@@ -169,8 +169,8 @@ vtkSmartPointer<vtkPolyData> FaceQuality::faces(bool all) const
 
 namespace
 {
-/// Whether a mesh has cells that only metrics of finite volumes measure: polyhedra, and polygons
-/// of a plane mesh.
+/// Whether a mesh has cells that only finite-volume metrics support: polyhedra, and polygons in a
+/// planar mesh.
 bool hasPolyhedra(const Mesh& mesh)
 {
   const MeshView& view = mesh.view();

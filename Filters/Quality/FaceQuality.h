@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class tautline::FaceQuality
- * @brief The metrics of finite volumes on one data set, for vtkElementQuality.
+ * @brief Finite-volume metrics on one data set, for vtkElementQuality.
  */
 #ifndef tautline_FaceQuality_h
 #define tautline_FaceQuality_h
@@ -23,28 +23,28 @@ namespace tautline
 class FaceQuality
 {
 public:
-  /// @param input must outlive it, and so must the adapter's own
+  /// @param input must outlive this object, and so must the adapter's own input
   FaceQuality(vtkDataSet* input, std::unique_ptr<FaceMeshAdapter> adapter,
     FaceConvention convention, int threads);
 
-  /// Sets the validity of polyhedra and polygons, which Mesh::classifyCells() leaves.
-  /// @return what was assumed of the mesh, in sentences for the user, or ""
+  /// Sets the validity of polyhedra and polygons, which Mesh::classifyCells() does not set.
+  /// @return the assumptions on the mesh, as sentences for the user, or ""
   const std::string& classify(signed char* validity) const;
 
   /// Writes the values of a metric of MetricFamily::Faces, one per cell of the data set; 0 for
-  /// those that are no cells of highest dimension. Keeps those of faces for the output.
+  /// cells of lower dimension. Keeps the values of faces for the output.
   void measure(Metric metric, double* values);
 
-  /// Makes the checks of checkMesh, of a piece on what is of the piece.
+  /// Runs the checks of checkMesh; for a piece, on the cells and faces of the piece.
   MeshCheckReport& check();
 
   /**
    * @brief The faces, after measure() and check(), with cell arrays: `Face`, `Owner` and
    * `Neighbour` (cells of the data set, -1: none), `Patch` (-1: internal), `Failed` (1 << kind of
    * the checks that the face or one of its cells fails), `OwnerWeight`, and the metrics of faces.
-   * Of pieces, each face is in the output of one, but for failed ones between two pieces, which
-   * each has that sees a fault; these have no `Neighbour`.
-   * @param all false: only faces that fail a check, or are of a cell that does
+   * For pieces, each face is in the output of one piece, except failed faces between two pieces,
+   * which are in the output of each piece that detects the failure; these have no `Neighbour`.
+   * @param all if false, only faces that fail a check or belong to a cell that does
    */
   vtkSmartPointer<vtkPolyData> faces(bool all) const;
 
@@ -62,18 +62,18 @@ private:
 };
 
 /**
- * @brief For a mesh of which some metrics are those of finite volumes, or that has polyhedra, that
- * of each piece; else empty. Collective.
- * @param pieces their adapters get the plane of polygons, where there are
+ * @brief One object per piece for a mesh with polyhedra, or if some metrics are finite-volume
+ * metrics; otherwise empty. Collective.
+ * @param pieces their adapters get the plane of polygons, if there are any
  */
 std::vector<std::unique_ptr<FaceQuality>> makeFaceQuality(RankGroup& group,
   const std::vector<FaceInput>& pieces, const std::vector<Metric>& metrics,
   FaceConvention convention, int threads);
 
-/// Whether all metrics are those of elements, so that polyhedra are left out.
+/// Whether all metrics are element metrics, so that polyhedra are left out.
 bool measuresElementsOnly(const std::vector<Metric>& metrics);
 
-/// Of a mesh in one piece; null where there is none.
+/// For a mesh in one piece; null if no such object is needed.
 std::unique_ptr<FaceQuality> makeFaceQuality(const FaceInput& mesh,
   const std::vector<Metric>& metrics, FaceConvention convention, int threads);
 }

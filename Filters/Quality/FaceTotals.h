@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class tautline::FaceTotals
- * @brief Adds up the checks of checkMesh of several meshes, and collects their faces.
+ * @brief Adds up the results of checkMesh's checks on several meshes, and collects their faces.
  */
 #ifndef tautline_FaceTotals_h
 #define tautline_FaceTotals_h
@@ -30,7 +30,7 @@ public:
   /// A row for each check; none if no mesh was checked.
   void tabulate(vtkTable* table) const;
   void copyTo(vtkPolyData* output) const;
-  /// The verdict, and the checks that fail, in lines for the user; "" if no mesh was checked.
+  /// The verdict and the failed checks, in lines for the user; "" if no mesh was checked.
   std::string summary() const;
   const MeshCheckReport& report() const { return this->Report; }
 

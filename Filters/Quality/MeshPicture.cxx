@@ -12,13 +12,13 @@ namespace tautline
 namespace
 {
 constexpr int SmallestSize = 16, LargestSize = 4096;
-constexpr int Samples = 2;            // of a pixel, in each direction
+constexpr int Samples = 2;            // per pixel, in each direction
 constexpr double Margin = 0.04;       // of the picture, on each side
 constexpr double EdgeWidth = 0.6;     // pixels
-constexpr double RoomForEdges = 9;    // pixels: the mean length of an edge that is drawn
-constexpr double EdgeShade = 0.45;    // of the colour of the cell
-constexpr double AmbientLight = 0.55; // of a face that is seen from its side
-constexpr double Paleness = 0.6;      // of what is in front of highlighted cells
+constexpr double RoomForEdges = 9;    // pixels: the smallest mean length of drawn edges
+constexpr double EdgeShade = 0.45;    // factor on the color of the cell
+constexpr double AmbientLight = 0.55; // light on a face seen edge-on
+constexpr double Paleness = 0.6;      // paleness of cells in front of highlighted ones
 constexpr double Farthest = -std::numeric_limits<double>::infinity();
 constexpr Color White = { 1, 1, 1 };
 const Vec3 TowardsViewer = { 0.75, -1.0, 0.55 };
@@ -34,7 +34,7 @@ bool isFinite(const Vec3& p)
   return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
 }
 
-/// The directions to the right, up and towards the viewer.
+/// The directions to the right, up and toward the viewer.
 struct Camera
 {
   Vec3 right, up, back;
@@ -48,7 +48,7 @@ Camera cameraOf(const std::vector<PicturePart>& parts)
     const bool planar = part.mesh->dimension() == Dimension::Planar;
     const bool some = part.mesh->dimension() != Dimension::None;
     first = first ? first : some ? part.mesh : nullptr;
-    // Planar parts in different planes are a surface.
+    // Planar parts in different planes form a surface.
     if (some && (!planar || std::abs(dot(part.mesh->normal(), first->normal())) < 1 - 1e-9))
     {
       first = nullptr;
@@ -64,7 +64,7 @@ Camera cameraOf(const std::vector<PicturePart>& parts)
   return { right, cross(back, right), back };
 }
 
-/// A facet in coordinates of the picture: pixels to the right and down, depth towards the viewer.
+/// A facet in coordinates of the picture: pixels to the right and down, depth toward the viewer.
 struct Facet
 {
   std::array<Vec3, MaxFaceNodes> corners;
@@ -74,7 +74,7 @@ struct Facet
   bool highlighted = false;
 };
 
-/// Calls visit(nodes in their order around the facet, number of nodes, cell).
+/// Calls visit(nodes in order around the facet, number of nodes, cell).
 template <class Visit>
 void forEachDrawn(const PicturePart& part, const Visit& visit)
 {
@@ -112,7 +112,7 @@ void forEachDrawn(const PicturePart& part, const Visit& visit)
         {
           const auto& others = uses->others;
           const bool quad = others[2] >= 0;
-          // The third of the other nodes is opposite of the smallest.
+          // The third of the other nodes is opposite the smallest.
           const Index nodes[MaxFaceNodes] = { smallest, others[0], quad ? others[2] : others[1],
             others[1] };
           if (count == 1)
@@ -123,10 +123,10 @@ void forEachDrawn(const PicturePart& part, const Visit& visit)
   }
 }
 
-/// The facets of all parts, in coordinates of the mesh seen by the camera.
+/// The facets of all parts, in the coordinates of the camera.
 std::vector<Facet> facetsOf(const std::vector<PicturePart>& parts, const Camera& camera)
 {
-  // Coordinates of any size: they are divided by the largest, as a power of two.
+  // Coordinates may have any size: they are divided by the largest, rounded to a power of two.
   double largest = 0;
   for (const PicturePart& part : parts)
   {
@@ -175,7 +175,7 @@ std::vector<Facet> facetsOf(const std::vector<PicturePart>& parts, const Camera&
   return facets;
 }
 
-/// Moves the facets into a picture of this size.
+/// Maps the facets into a picture of this size.
 void fit(std::vector<Facet>& facets, int width, int height)
 {
   constexpr double largest = std::numeric_limits<double>::max();
@@ -237,7 +237,8 @@ public:
 
   void draw(const Facet& facet, double edgeWidth)
   {
-    // Of a quadrilateral two triangles; the diagonal, the side before corner 2, is no edge.
+    // A quadrilateral is drawn as two triangles; the diagonal, the side before corner 2, is not an
+    // edge.
     this->drawTriangle(facet, 0, 1, 2, edgeWidth, facet.size == 3);
     if (facet.size == 4)
     {
@@ -257,7 +258,8 @@ private:
     {
       return;
     }
-    // Of the sides a-b, b-c, c-a: the barycentric coordinate times this is the distance in pixels.
+    // For the sides a-b, b-c, c-a: the barycentric coordinate times this factor is the distance in
+    // pixels.
     const double heights[3] = { std::abs(area) / std::hypot(b[0] - a[0], b[1] - a[1]),
       std::abs(area) / std::hypot(c[0] - b[0], c[1] - b[1]),
       std::abs(area) / std::hypot(a[0] - c[0], a[1] - c[1]) };
@@ -314,7 +316,7 @@ void check(const std::vector<PicturePart>& parts, int width, int height)
     if (!part.mesh || part.colors.size() != cells ||
       (!part.highlighted.empty() && part.highlighted.size() != cells))
     {
-      throw Error("A part of a picture needs a mesh with one colour per cell.");
+      throw Error("A part of a picture needs a mesh with one color per cell.");
     }
   }
 }

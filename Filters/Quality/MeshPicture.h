@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MeshPicture.h
- * @brief A picture of a mesh in the colours of its cells, drawn without a display.
+ * @brief Draws a picture of a mesh in the colors of its cells, without a display.
  *
- * Planar meshes are seen along their normal, others from the front, the right and above, in
- * parallel projection. Of volume meshes the boundary is drawn. Cells that are highlighted are drawn
- * through what is in front of them, which is pale then: elements inside a solid are visible. Edges
- * are drawn where there is room for them.
+ * Planar meshes are viewed along their normal, others from the front, right and above, in parallel
+ * projection. Only the boundary of volume meshes is drawn. Highlighted cells are drawn through the
+ * cells in front of them, which are then pale, so that elements inside a solid are visible. Edges
+ * are drawn if there is enough space.
  */
 #ifndef tautline_MeshPicture_h
 #define tautline_MeshPicture_h
@@ -22,7 +22,7 @@ namespace tautline
 /// Red, green and blue, 0 to 1.
 using Color = std::array<double, 3>;
 
-/// A part of a picture; what it refers to must outlive it.
+/// A part of a picture; the data that it refers to must outlive it.
 struct PicturePart
 {
   const Mesh* mesh = nullptr;
@@ -30,7 +30,7 @@ struct PicturePart
   std::vector<char> highlighted; ///< one per cell, nonzero: visible through others; may be empty
 };
 
-/// Rows from the top to the bottom, of pixels from the left to the right.
+/// Rows from top to bottom, with pixels from left to right.
 struct Picture
 {
   int width = 0, height = 0;
@@ -38,12 +38,12 @@ struct Picture
 };
 
 /**
- * @brief Draws the parts into one picture, as large as fits into it.
+ * @brief Draws the parts into one picture, as large as possible.
  * @param parts cells with a coordinate that is not finite are left out; may be empty
  * @param width, height pixels, 16 to 4096
  *
- * Without a cell the picture is white. The result does not depend on the number of threads. Throws
- * Error for another size, and for a part without a mesh or with another number of colours.
+ * Without cells the picture is white. The result does not depend on the number of threads. Throws
+ * Error for an invalid size, and for a part without a mesh or with a wrong number of colors.
  */
 TAUTLINEQUALITY_EXPORT Picture drawMeshes(
   const std::vector<PicturePart>& parts, int width, int height);

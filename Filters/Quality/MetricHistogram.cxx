@@ -64,7 +64,7 @@ std::vector<MetricHistogram> histogramsOf(vtkTable* statistics, vtkTable* histog
       continue;
     }
     metric.label = info->label;
-    // An empty bar beyond the good end says nothing.
+    // An empty bar beyond the good end carries no information.
     const bool badIsRight = info->direction == Direction::SmallerIsBetter;
     const auto good = badIsRight ? bars.begin() : bars.end() - 1;
     if (good->count == 0)
@@ -78,7 +78,7 @@ std::vector<MetricHistogram> histogramsOf(vtkTable* statistics, vtkTable* histog
     {
       invalid.push_back({ HistogramBar::Degenerate, 0, 0, number(degenerate) });
     }
-    // Metrics that order inverted elements have them in their bins.
+    // Metrics that rank inverted elements include them in their bins.
     invalid.push_back({ HistogramBar::Inverted, 0, 0, number(inverted) });
     if (badIsRight)
     {

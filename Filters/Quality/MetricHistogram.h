@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MetricHistogram.h
- * @brief The bars of a histogram of quality: bins over the acceptable range, what is beyond it, and
+ * @brief The bars of a quality histogram: bins over the acceptable range, values beyond it, and
  * invalid elements.
  */
 
@@ -42,25 +42,24 @@ struct MetricHistogram
 {
   std::string metric; ///< the name of the cell array, "imr"
   std::string label;  ///< "Inverse mean ratio"
-  /// From the left to the right. The bad side ends with the bars of degenerate and inverted
-  /// elements.
+  /// From left to right. The bad side ends with the bars of degenerate and inverted elements.
   std::vector<HistogramBar> bars;
 };
 
-/// Whether the values of a bar are an interval.
+/// Whether the bar stands for an interval of values.
 inline bool hasValues(const HistogramBar& bar)
 {
   return bar.kind != HistogramBar::Inverted && bar.kind != HistogramBar::Degenerate;
 }
 
 /**
- * @brief The histograms of the tables Statistics and Histogram of Element Quality.
- * @return one for each metric; none if the tables are not such ones
+ * @brief The histograms from the tables Statistics and Histogram of Element Quality.
+ * @return one for each metric; empty for other tables
  */
 TAUTLINEQUALITY_EXPORT std::vector<MetricHistogram> histogramsOf(
   vtkTable* statistics, vtkTable* histogram);
 
-/// "1.5 to 2", "above 3 or inverted": what the bars first to last are.
+/// Describes the bars from first to last: "1.5 to 2", "above 3 or inverted".
 TAUTLINEQUALITY_EXPORT std::string describeBars(
   const MetricHistogram& histogram, int first, int last);
 

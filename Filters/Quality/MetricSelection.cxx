@@ -48,7 +48,7 @@ bool MetricSelection::addByName(const char* name)
   if (!info)
   {
     std::string message =
-      std::string("There is no metric '") + (name ? name : "") + "'. There are:";
+      std::string("There is no metric '") + (name ? name : "") + "'. The metrics are:";
     for (const MetricInfo& known : metricRegistry())
     {
       message += std::string(" ") + known.name;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class tautline::MetricSelection
- * @brief The metrics requested of a filter, in order and without repeats.
+ * @brief The metrics requested from a filter, in order and without repetitions.
  */
 #ifndef tautline_MetricSelection_h
 #define tautline_MetricSelection_h
@@ -18,16 +18,15 @@ namespace tautline
 class TAUTLINEQUALITY_EXPORT MetricSelection
 {
 public:
-  /// The metrics chosen that this process has; the inverse mean ratio if there is none.
+  /// The chosen metrics that this process has; the inverse mean ratio if there are none.
   std::vector<Metric> metrics() const;
-  /// What is wrong with a user's metric that is chosen and that this process does not have, see
-  /// missingMetric(); or "".
+  /// The problem with a chosen user metric that this process lacks, see missingMetric(); or "".
   std::string problem() const;
 
-  /// @return whether the selection changed. Throws Error for a number that is no metric's; that of
-  /// a user's metric may be registered later.
+  /// @return whether the selection changed. Throws Error for a number that is not a metric's; a
+  /// user metric may be registered later.
   bool add(int metric);
-  /// By name, label, symbol or alias; throws Error that lists the names if there is none such.
+  /// By name, label, symbol or alias; throws Error, with a list of the names, if it does not exist.
   bool addByName(const char* name);
   bool clear();
 

@@ -18,15 +18,15 @@ class PieceFaces
 {
 public:
   /**
-   * @brief Finds the faces where metrics or cells need them, and makes the checks. Throws Error as
+   * @brief Finds the faces if metrics or cells need them, and runs the checks. Throws Error as
    * FaceMeshAdapter does. Collective.
-   * @param orientations found; it must outlive this
-   * @param orient whether cells are turned as it says
+   * @param orientations found before; must outlive this object
+   * @param orient whether to reorder cells accordingly
    */
   void find(const PieceOrientations& orientations, RankGroup& group,
     const std::vector<Metric>& metrics, FaceConvention convention, bool orient, int threads);
 
-  /// Of a data set of the input; null if there are none.
+  /// The faces of a data set of the input; null if there are none.
   FaceQuality* piece(vtkDataSet* data) const;
   /// The checks of each mesh that has faces, the same on all ranks.
   const std::vector<std::vector<MeshCheck>>& checks() const { return this->Checks; }

@@ -14,14 +14,14 @@ void add(std::string& text, const std::string& sentence)
   text += (text.empty() || sentence.empty() ? "" : " ") + sentence;
 }
 
-/// A place without the number of the point, which is one in its piece.
+/// A position without the point number, which is local to its piece.
 std::string withoutNumber(const std::string& place)
 {
   const std::size_t at = place.find(" at ");
   return at == std::string::npos ? place : "the point" + place.substr(at + 3);
 }
 
-/// The pieces of this rank together.
+/// The findings of all pieces of this rank.
 PieceFindings joined(const std::vector<PieceFindings>& pieces)
 {
   PieceFindings all;

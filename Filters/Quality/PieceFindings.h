@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PieceFindings.h
- * @brief What Element Quality remarks on a mesh besides its values, also in pieces on processes.
+ * @brief The remarks of Element Quality on a mesh besides its values, also for pieces on several
+ * processes.
  */
 #ifndef tautline_PieceFindings_h
 #define tautline_PieceFindings_h
@@ -21,15 +22,16 @@ struct PieceFindings
   CoincidentPoints seams; ///< without representatives
   Index near = 0, duplicates = 0;
   std::string firstApart, firstNear; ///< places
-  std::string text;                  ///< what there is to say if there are no other pieces
+  std::string text;                  ///< the remark if there are no other pieces
 };
 
 /**
- * @brief What there is to remark.
- * @param reversed one flag per cell of mesh(): it lists its points in the opposite order; or null
- * @param skip one flag per cell: it does not count; or null
- * @param curved how many cells of higher order are not measured at their corners only
- * @param elements whether elements alone are measured, so that other cells are worth a remark
+ * @brief Collects the findings.
+ * @param reversed one flag per cell of mesh(), set if it lists its points in the opposite order; or
+ * null
+ * @param skip one flag per cell, set if it does not count; or null
+ * @param curved the number of higher-order cells that are not measured only at their corners
+ * @param elements whether only elements are measured, so that other cells deserve a remark
  */
 PieceFindings findingsOf(const MeshAdapter& adapter, const unsigned char* reversed,
   const unsigned char* skip, Index curved, bool elements);
@@ -38,9 +40,9 @@ PieceFindings findingsOf(const MeshAdapter& adapter, const unsigned char* revers
  * @brief The remarks on the whole mesh, in sentences, on the first rank; "" on the others.
  * Collective.
  *
- * Of a mesh in one piece they are those on the mesh. Else numbers are those of all pieces, and
- * points on seams are not worth a remark: pieces have copies of points.
- * @param own of the pieces of this rank with cells
+ * For a mesh in one piece, these are the remarks on the mesh. Otherwise numbers cover all pieces,
+ * and points on seams are not mentioned, because pieces have copies of points.
+ * @param own findings on the pieces of this rank that have cells
  */
 std::string describeFindings(RankGroup& group, const std::vector<PieceFindings>& own);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PieceOrientations.h
- * @brief What the pieces of meshes on several processes have to know of the whole to be measured.
+ * @brief Data on whole meshes that is needed to measure their pieces on several processes.
  */
 #ifndef tautline_PieceOrientations_h
 #define tautline_PieceOrientations_h
@@ -20,46 +20,47 @@ class vtkDataSet;
 namespace tautline
 {
 /**
- * @brief What is found of the orders of the cells, in sentences for the user, or "".
+ * @brief The findings on the order of the cells, as sentences for the user, or "".
  * @param mode a value of vtkElementQuality::SetReversedMesh()
  */
 std::string describeOrder(const RankOrder& found, Dimension dimension, int mode);
 
-/// What a process knows of the whole of a mesh.
+/// The data on a whole mesh on each process.
 struct WholeOrientation
 {
   MeshSpace space;
   RankOrder order; ///< for the pieces of this process
 };
 
-/// A piece of a mesh of which something is known.
+/// A piece of a mesh with known orientation.
 struct OrientedPiece
 {
   const WholeOrientation* whole;
-  std::size_t number; ///< of the piece in RankOrder::reverse
+  std::size_t number; ///< the number of the piece in RankOrder::reverse
 };
 
 /**
  * @class tautline::PieceOrientations
- * @brief Of each mesh in pieces, on processes or in partitions, the space that it fills, the order
- * of its cells, and remarks. A part of a piece that is reversed may be inverted in the whole mesh,
- * with neighbours in another piece that are not; a flat piece may be a part of a surface in space,
+ * @brief For each mesh in pieces, on processes or in partitions: the space that it fills, the order
+ * of its cells, and remarks. A reversed part of a piece may be inverted in the whole mesh, if its
+ * neighbors in another piece are not reversed; a flat piece may be part of a surface in space,
  * which has no inverted cells.
  */
 class PieceOrientations
 {
 public:
   /**
-   * @brief Finds that of the meshes of all processes. Throws Error, on all, for a mesh that is
+   * @brief Finds these data for the meshes of all processes. Throws Error, on all, if a mesh is
    * malformed. Collective.
    * @param mode as for describeOrder() @param elements as for findingsOf()
    */
   void find(vtkDataObject* input, int threads, RankGroup& group, int mode, bool elements);
-  /// The data sets of this process of each mesh; as many meshes on all processes.
+  /// The data sets of this process for each mesh; the number of meshes is the same on all
+  /// processes.
   const std::vector<std::vector<vtkDataSet*>>& meshes() const { return this->Meshes; }
-  /// Of a data set of the input; null before find(), and of one without cells.
+  /// The data for a data set of the input; null before find() and for a data set without cells.
   const OrientedPiece* piece(vtkDataSet* data) const;
-  /// On the first process the remarks on all meshes, in sentences; "" on the others.
+  /// On the first process, the remarks on all meshes, as sentences; "" on the others.
   const std::string& notice() const { return this->Notice; }
 
 private:

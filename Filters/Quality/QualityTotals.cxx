@@ -26,7 +26,7 @@ namespace tautline
 {
 namespace
 {
-/// How many of the worst elements of each metric the summary names.
+/// The number of worst elements of each metric in the summary.
 constexpr std::size_t ListedInSummary = 3;
 }
 
@@ -115,7 +115,7 @@ void QualityTotals::addValues(
   }
   else
   {
-    // Not insert(): GCC 14 warns of an overflow that cannot be.
+    // Not insert(): GCC 14 warns of an overflow that cannot occur.
     const std::size_t first = all.size();
     all.resize(first + measured.size());
     std::copy(measured.begin(), measured.end(), all.data() + first);
@@ -179,7 +179,7 @@ void QualityTotals::gather(vtkMultiProcessController* controller)
   int dimension = this->Dimension;
   controller->AllReduce(&dimension, &this->Dimension, 1, vtkCommunicator::MAX_OP);
 
-  // Ids without global ones count on from rank to rank.
+  // Without global ids, numbering continues from rank to rank.
   const vtkIdType cells = this->CellsBefore + this->CellsOfLast;
   std::vector<vtkIdType> perRank(controller->GetNumberOfProcesses());
   controller->AllGather(&cells, perRank.data(), 1);
@@ -189,11 +189,11 @@ void QualityTotals::gather(vtkMultiProcessController* controller)
     before += perRank[rank];
   }
 
-  // Where one process has all cells, numbers need no process.
+  // If one process has all cells, numbers need no process.
   this->Processes = static_cast<int>(
     std::count_if(perRank.begin(), perRank.end(), [](vtkIdType n) { return n > 0; }));
   const int process = controller->GetLocalProcessId();
-  constexpr int fields = 11; // id, validity, value, centre, and where it is
+  constexpr int fields = 11; // id, validity, value, center, and location
   for (std::size_t m = 0; m < this->Metrics.size(); ++m)
   {
     vtkNew<vtkDoubleArray> values, allValues, worst, allWorst;
@@ -307,7 +307,7 @@ void QualityTotals::fillHistogram(int bins, vtkTable* table) const
       count->SetValue(r, n);
     };
     const double low = h.edges.front(), high = h.edges.back();
-    // The smallest value may be of an inverted element, which is in no row then.
+    // The smallest value may belong to an inverted element, which is then in no row.
     const double smallest = info.inverted == InvertedValue::Negative
       ? std::max(0.0, result.statistics.minimum)
       : result.statistics.minimum;
@@ -488,9 +488,9 @@ std::string QualityTotals::summary() const
   }
   if (this->Missed.invalid > 0)
   {
-    text << " Of " << this->Missed.invalid
-         << " curved cells that are not valid, the determinant is positive at all corners of "
-         << this->Missed.atCorners << ", at all integration points of "
+    text << " " << this->Missed.invalid
+         << " curved cells are not valid; the determinant is positive at all corners of "
+         << this->Missed.atCorners << " of them and at all integration points of "
          << this->Missed.atIntegrationPoints << ".";
   }
   for (std::size_t m = 0; m < this->Metrics.size(); ++m)

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class tautline::QualityTotals
- * @brief Gathers what vtkElementQuality measures on blocks and processes, and makes its tables.
+ * @brief Gathers the measurements of vtkElementQuality on blocks and processes, and fills its
+ * tables.
  */
 #ifndef tautline_QualityTotals_h
 #define tautline_QualityTotals_h
@@ -28,34 +29,35 @@ public:
 
   const std::vector<Metric>& metrics() const { return this->Metrics; }
 
-  /// Before the metrics of a block: its dimension, validity and angles. `skip` as in CellValues.
+  /// Call before adding the metrics of a block: adds its dimension, validity and angles. `skip` as
+  /// in CellValues.
   void addBlock(const Mesh& mesh, const signed char* validity, const unsigned char* skip,
     const BlockPlace& place, int threads);
 
   /**
-   * @brief After that, of a block with curved cells.
-   * @param places where they are shown among the worst: a point per cell of the mesh; kept alive
-   * until the next block
+   * @brief Call next for a block with curved cells.
+   * @param places their positions in the output Worst, a point per cell of the mesh; must be kept
+   * alive until the next block
    */
   void addCurved(const MissedCells& missed, const double* places);
 
   /**
-   * @brief Adds the values of metric number m of the block added last.
+   * @brief Adds the values of metric number m for the last block added.
    * @param globalIds of its cells, or null
    */
   void addValues(std::size_t m, const Mesh& mesh, const CellValues& data, vtkDataArray* globalIds);
 
-  /// The checks of solvers, the same on all processes.
+  /// Sets the checks of solvers, the same on all processes.
   void setChecks(const std::vector<int>& checks);
   std::vector<int> checks() const;
-  /// Adds the values of a check of solvers on the block added last, see ElementChecks.h.
+  /// Adds the values of a check of solvers for the last block added, see ElementChecks.h.
   void addCheck(int check, const signed char* validity, const unsigned char* skip,
     const double* values, Index cells);
 
-  /// Brings everything to process 0. Collective; without a controller, nothing.
+  /// Sends everything to process 0. Collective; does nothing without a controller.
   void gather(vtkMultiProcessController* controller);
 
-  /// Fills the tables; may reorder what was gathered.
+  /// Fills the tables; may reorder the gathered data.
   void tabulate(vtkTable* statistics, int bins, vtkTable* distribution, vtkTable* angles,
     vtkPolyData* worst, vtkTable* histogram);
 
@@ -68,12 +70,12 @@ public:
 private:
   struct Worst
   {
-    WorstElement element; ///< its cell is a global id, or counts through blocks and processes
+    WorstElement element; ///< its cell is a global id, or numbered over blocks and processes
     Vec3 center;
-    bool isGlobal = false; ///< the former
-    Index cell = 0;        ///< its number in its data set
-    BlockPlace place;      ///< of that
-    int process = 0;       ///< that has it
+    bool isGlobal = false; ///< whether it is a global id
+    Index cell = 0;        ///< its index in its data set
+    BlockPlace place;      ///< of its data set
+    int process = 0;       ///< the process that has it
   };
   struct PerMetric
   {
@@ -101,13 +103,13 @@ private:
   ValidityCounts Counts;
   MissedCells Missed;
   std::map<int, CheckRange> Checks;
-  const double* Places = nullptr; ///< of the block added last, where it has curved cells
+  const double* Places = nullptr; ///< for the last block added, if it has curved cells
   Index CellsBefore = 0;          ///< cells of the blocks before the last one
   Index CellsOfLast = 0;
   int Dimension = 2;
   bool HasGlobalIds = false;
   BlockPlace Place;  ///< of the block added last
-  int Processes = 1; ///< that have cells
+  int Processes = 1; ///< number of processes that have cells
 };
 }
 #endif

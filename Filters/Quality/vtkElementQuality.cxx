@@ -72,7 +72,7 @@ vtkSmartPointer<vtkDoubleArray> tripleArray(const char* name, vtkIdType tuples)
   return array;
 }
 
-/// The cell arrays of where curved cells have their smallest Jacobian determinant.
+/// The cell arrays with the positions of the smallest Jacobian determinant in curved cells.
 void addPlaces(const tautline::CurvedQuality& curved, const signed char* validity,
   const unsigned char* skip, tautline::QualityTotals& totals, vtkDataSet* output)
 {
@@ -276,7 +276,8 @@ int vtkElementQuality::RequestData(
 }
 
 //------------------------------------------------------------------------------
-/// What fails on some processes, as a block or a file of criteria may be wrong there, fails on all.
+/// A failure on some processes, where a block or a file of criteria may be wrong, is a failure on
+/// all.
 void vtkElementQuality::Together(const char* memoryRemedy, const std::function<void()>& work)
 {
   const std::string own = FailureOf(memoryRemedy, work);
@@ -313,7 +314,7 @@ void vtkElementQuality::MeasureAll(
       {
         const bool all =
           !several || this->Controller == vtkMultiProcessController::GetGlobalController();
-        // Without MPI each process measures its piece as a mesh of its own.
+        // Without MPI, each process measures its piece as a separate mesh.
         if (const auto group = all ? tautline::tryProcessGroup() : nullptr)
         {
           group->together(
@@ -344,7 +345,7 @@ void vtkElementQuality::MeasureAll(
   totals.gather(this->Controller);
   grader.gather(this->Controller);
   faces.copyTo(vtkPolyData::GetData(outputVector, FacesPort));
-  // Unlike the tables, each process has its own.
+  // Unlike the tables, this output exists on each process.
   bad.copyTo(vtkUnstructuredGrid::GetData(outputVector, BadPort));
   if (!this->Controller || this->Controller->GetLocalProcessId() == 0)
   {
@@ -398,7 +399,7 @@ void vtkElementQuality::Measure(const tautline::InputBlock& block,
   using namespace tautline;
   vtkDataSet *input = block.input, *output = block.output;
   output->ShallowCopy(input);
-  // The checks are one step, each metric is one, and the grades are the last.
+  // The checks are one step, each metric is one step, and the grades are the last step.
   const auto& metrics = totals.metrics();
   const int blocks = countBlocks(this->GetInputDataObject(0, 0));
   const auto stepAt = [&](std::size_t step)
@@ -478,12 +479,12 @@ void vtkElementQuality::Measure(const tautline::InputBlock& block,
   progress.emplace(this, stepAt(metrics.size() + 1), stepAt(metrics.size() + 2));
   this->CheckFaces(faces, alone != nullptr, faceTotals);
   this->MeasureChecks(input, adapter, validity->GetPointer(0), skipped, totals, output);
-  // Ghosts have the grades of the cells that they are copies of, but do not count.
+  // Ghosts get the grades of their originals but do not count.
   const std::vector<unsigned char> beside = facesBesideVolumes(mesh);
   grader.grade(
     mesh, validity->GetPointer(0), skipped, beside.empty() ? nullptr : beside.data(), output);
   output->GetCellData()->AddArray(validity);
-  // Without active point scalars, views colour by the metric.
+  // Without active point scalars, views color by the metric.
   output->GetPointData()->SetActiveScalars(nullptr);
   output->GetCellData()->SetActiveScalars(metricInfo(metrics.front()).name);
   if (this->ExtractBad && mesh.dimension() == Dimension::Volume && !this->GetAbortExecute())
@@ -555,8 +556,8 @@ std::unique_ptr<tautline::CurvedQuality> vtkElementQuality::CertifyCurved(
   if (curved->turnedWedges() > 0)
   {
     this->AddToNotice(std::to_string(curved->turnedWedges()) +
-      " curved wedges list their nodes in the opposite order, as files of other versions of VTK "
-      "do, and are taken for their mirror images.");
+      " curved wedges list their nodes in the opposite order, as in files of other versions of "
+      "VTK, and are treated as their mirror images.");
   }
   return curved;
 }
@@ -631,7 +632,7 @@ tautline::Targets vtkElementQuality::MakeTargets(
 {
   if (input->GetNumberOfCells() == 0)
   {
-    return {}; // of an empty piece, without arrays
+    return {}; // an empty piece without arrays
   }
   tautline::TargetChoice choice;
   choice.type = static_cast<tautline::TargetType>(this->TargetType);

@@ -1,45 +1,46 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkElementQuality
- * @brief Measures every element of a mesh by any number of quality metrics.
+ * @brief Measures the quality of every element of a mesh with any number of metrics.
  *
- * Takes triangles, quadrilaterals, tetrahedra, hexahedra, wedges and pyramids, also mixed, from any
- * vtkDataSet or composite data set. Metrics of finite volumes are measured on polyhedra, too, and
- * on polygons of plane meshes, which count as one layer of prisms. Of cells of higher order, up to
- * order 6, `Validity`, sizes and the metrics of T = A W^-1 with the ideal target hold for the whole
- * curved cell; lengths, angles and metrics with another target are measured on the corners (see
- * tautline/Quality/CurvedQuality.h). Whether the mesh is planar, a surface or a volume is detected,
- * and so is its orientation: a mesh that is reversed throughout is reported and, by default,
- * measured as if it were not; one of mixed orientation is reported.
+ * Supports triangles, quadrilaterals, tetrahedra, hexahedra, wedges and pyramids, also mixed, in
+ * any vtkDataSet or composite data set. Finite-volume metrics are also measured on polyhedra, and
+ * on polygons of planar meshes, which count as one layer of prisms. For cells of higher order, up
+ * to order 6, `Validity`, sizes and the metrics of T = A W^-1 with the ideal target hold for the
+ * whole curved cell; lengths, angles and metrics with another target are measured at the corners
+ * (see tautline/Quality/CurvedQuality.h). The filter detects whether the mesh is planar, a surface
+ * or a volume, and its orientation: a mesh that is reversed throughout is reported and, by default,
+ * measured as if it were not; mixed orientation is reported.
  *
  * @par Output port 0 `Mesh`:
  * The input with cell arrays: one per metric (double, named by the metric: "imr", "mean_ratio",
  * ...) and `Validity` (signed char): 1 valid, 0 degenerate, -1 inverted, -2 not measured (cell
- * type), -3 not finite (coordinates NaN, infinite, or beyond 1e100 where most cells are not).
- * Values are always finite. A metric that is singular at a degenerate element is 0 there; one that
- * is not defined on a cell is 0. Inverted elements have negative values of signed metrics (see
- * MetricInfo::inverted); hexahedra and wedges that are folded between valid corners are inverted,
- * too, and have a negative "min_jacobian". Where there are curved cells, also `MinimumPoint`, the
- * place where the Jacobian determinant of a curved cell is smallest (of others the center), and
- * `MinimumCoordinates`, its parametric coordinates (of others 0). The first metric is the active
- * cell scalar array; point arrays pass, none of them active.
+ * type), -3 not finite (coordinates NaN, infinite, or beyond 1e100 while most cells are not).
+ * Values are always finite. A metric is 0 on a degenerate element where it is singular, and on a
+ * cell for which it is not defined. Inverted elements have negative values of signed metrics (see
+ * MetricInfo::inverted); hexahedra and wedges that are folded between valid corners also count as
+ * inverted, and have a negative "min_jacobian". If there are curved cells, the arrays
+ * `MinimumPoint`, the point where the Jacobian determinant of a curved cell is smallest (for other
+ * cells the center), and `MinimumCoordinates`, its parametric coordinates (for other cells 0), are
+ * added. The first metric is the active cell scalar array; point arrays are passed on, none of them
+ * active.
  *
- * Checks of solvers, if any are chosen, have cell arrays of their names.
+ * Checks of solvers, if any are chosen, are cell arrays with their names.
  *
  * @par Output port 1 `Statistics`:
  * A vtkTable with a row per metric: `Metric`, `Label`, `Measured` (number of elements), `Minimum`,
  * `Maximum`, `Mean`, `RMS`, `StandardDeviation`, `Quantile01`, `05`, `25`, `50`, `75`, `95`, `99`,
  * `Worst`, `OutsideAcceptable`, `AcceptableLow`, `AcceptableHigh`, then the same in each row:
- * `Inverted`, `Degenerate`, `NotMeasured`, `NonFinite`, `Curved` (cells of higher order that are
- * certified), `MissedAtCorners` and `MissedAtIntegrationPoints` (those of them that are not valid,
- * though the determinant is positive at all corners, or at all points where solvers integrate: 4 of
- * a quadratic tetrahedron, see tautline/Elements/ElementSamples.h); `WorstCells` (10 components:
- * ids, worst first, -1 where there are fewer) and `WorstPositions` (30 components: their centers,
- * of curved cells the places where the determinant is smallest). Statistics are over the measured
- * elements: the valid and the inverted ones of the highest dimension in the data on which the
- * metric is defined; degenerate elements and ghost cells do not count. `Worst` is the value of an
- * inverted element if there are any, else the maximum or minimum, by the direction of the metric.
- * The ten worst elements are the inverted, then the degenerate, then the worst others.
+ * `Inverted`, `Degenerate`, `NotMeasured`, `NonFinite`, `Curved` (certified cells of higher order),
+ * `MissedAtCorners` and `MissedAtIntegrationPoints` (curved cells that are invalid although the
+ * determinant is positive at all corners, or at all integration points of solvers: 4 in a quadratic
+ * tetrahedron, see tautline/Elements/ElementSamples.h); `WorstCells` (10 components: ids, worst
+ * first, -1 where there are fewer) and `WorstPositions` (30 components: their centers, for curved
+ * cells the points where the determinant is smallest). Statistics are over the measured elements:
+ * the valid and inverted elements of the highest dimension in the data for which the metric is
+ * defined; degenerate elements and ghost cells do not count. `Worst` is the value of an inverted
+ * element if there is one, otherwise the maximum or minimum, by the direction of the metric. The
+ * ten worst elements are inverted ones first, then degenerate ones, then the worst others.
  *
  * @par Output port 2 `Distribution`:
  * A vtkTable with HistogramBins rows; for each metric the columns `<metric> value` (middle of the
@@ -47,20 +48,20 @@
  *
  * @par Output port 3 `Angles`:
  * A vtkTable with the five bins of dissertation Table 2.7: `From`, `To` (degrees), `Count`,
- * `Percent` of the corner angles, in volume meshes of the dihedral angles.
+ * `Percent` of the corner angles, or in volume meshes of the dihedral angles.
  *
  * @par Output port 4 `Worst`:
- * A vtkPolyData with a vertex at the center of each of the ten worst elements of each metric, in a
- * curved one where its determinant is smallest; point
- * arrays `Metric` (number), `Rank` (1 is the worst), `CellId`, `Value`, `Validity`, and where it
- * is: `Process`, `Block` (as in the summary, 0 of a single mesh), `Partition` (from 1; 0 if the
- * mesh has one on the process) and `Cell`, its number there. Zoom to it.
+ * A vtkPolyData with a vertex at the center of each of the ten worst elements of each metric, or
+ * for a curved element at the point where its determinant is smallest; point arrays `Metric`
+ * (number), `Rank` (1 is the worst), `CellId`, `Value`, `Validity`, and its location: `Process`,
+ * `Block` (as in the summary, 0 for a single mesh), `Partition` (from 1; 0 if the mesh has only one
+ * on the process) and `Cell`, its index there. Useful for zooming to these elements.
  *
  * @par Output port 5 `Histogram`:
  * A vtkTable with HistogramBins + 2 rows; for each metric the columns `<metric> from`, `<metric>
- * to` and `<metric> count`. The first row has the values below the acceptable range, the last one
- * those above it, the others are bins over it. Distribution, from the smallest to the largest
- * value, shows how far the extremes are; this one, how the others are distributed.
+ * to` and `<metric> count`. The first row counts the values below the acceptable range, the last
+ * row the values above it, and the other rows are bins over it. Distribution covers the full range
+ * and shows the extremes; this table shows the distribution of the other values.
  *
  * @par Output port 6 `Criteria`:
  * A vtkTable with a row for each of the criteria: `Metric`, `Label`, `Weight`, `Graded` (valid
@@ -68,32 +69,32 @@
  * criteria the mesh has the cell arrays `Grade` (0 passed, 1 warning, 2 failed, -1 none) and
  * `QualityIndex` (0 ideal, 1 worst).
  *
- * For composite data sets and on several MPI ranks the tables are those of the whole; on ranks
- * above 0 they are empty. Cell ids are then the global ids of the cells if the data have any, else
- * they count through blocks and ranks in order.
+ * For composite data sets and on several MPI ranks the tables cover the whole data; on ranks above
+ * 0 they are empty. Cell ids are then the global ids of the cells if the data have them, otherwise
+ * they are numbered over blocks and ranks in order.
  *
  * @par Output port 7 `Bad`:
  * A vtkUnstructuredGrid, filled if ExtractBad is on: the elements of volume meshes that are
  * inverted or degenerate, failed by the criteria or, without criteria, outside the acceptable range
- * of a metric, with their arrays. Of several processes, each has its own. Elements of other meshes
+ * of a metric, with their arrays. Each process has its own elements. The elements of other meshes
  * are visible without it.
  *
  * @par Output port 8 `Faces`:
- * A vtkPolyData with the faces of a mesh of which metrics of finite volumes are measured, by
- * default those that fail a check: cell arrays `Face` (number in the order of OpenFOAM), `Owner`
- * and `Neighbour` (cells; -1: none), `Patch` (-1: internal), `Failed` (bits of the checks, see
- * port 9), `OwnerWeight` (OpenFOAM's `weights`), and one per metric of faces.
+ * A vtkPolyData with the faces of a mesh if finite-volume metrics are measured, by default only
+ * faces that fail a check: cell arrays `Face` (number in the order of OpenFOAM), `Owner` and
+ * `Neighbour` (cells; -1: none), `Patch` (-1: internal), `Failed` (bits of the checks, see port 9),
+ * `OwnerWeight` (OpenFOAM's `weights`), and one per metric of faces.
  *
  * @par Output port 9 `MeshChecks`:
- * A vtkTable with a row for each check of OpenFOAM's checkMesh, if metrics of finite volumes are
+ * A vtkTable with a row for each check of OpenFOAM's checkMesh, if finite-volume metrics are
  * measured: `Check`, `Label`, `Minimum`, `Maximum`, `Mean`, `Limit`, `Offending`, `Severe` (faces
  * above 70 degrees), `OnRequest` (1: only with -allTopology or -allGeometry), `Failed`, `Bit`. See
  * tautline/FiniteVolume/MeshChecks.h.
  *
  * @par Targets:
- * Metrics that are functions of T = A W^-1 take the target element W from TargetType: the ideal
- * one, the same element of a reference mesh (input port 1), the ideal shape in a size given per
- * cell or point, or in a metric tensor.
+ * Metrics that are functions of T = A W^-1 use the target element W selected by TargetType: the
+ * ideal element, the same element of a reference mesh (input port 1), or the ideal shape with a
+ * size or a metric tensor given per cell or point.
  *
  * @par Example:
  * @code
@@ -162,11 +163,11 @@ public:
   };
   ///@{
   /**
-   * How target metrics combine the corners of cells other than simplices, and the places of a
-   * curved cell: their mean, the worst, or the mean of the power Power (negated where larger is
-   * better). If some corners or places are inverted, only these are combined, but for metrics that
-   * untangle. The worst imr, mean_ratio and condition_number of a curved cell are certified. The
-   * default is MEAN.
+   * The combination of the corners of cells other than simplices, and of the sample points of a
+   * curved cell, in target metrics: their mean, the worst, or the power mean with exponent Power
+   * (negated if larger is better). If some corners or sample points are inverted, only these are
+   * combined, except for untangling metrics. The worst imr, mean_ratio and condition_number of a
+   * curved cell are certified. The default is MEAN.
    */
   vtkTautlineSetRangeMacro(Combination, int, MEAN, POWER_MEAN);
   vtkGetMacro(Combination, int);
@@ -189,10 +190,10 @@ public:
   /**
    * The target element, for target metrics. IDEAL: the ideal cell of each type with unit
    * edges. REFERENCE: the same cell of the mesh at input port 1. SIZE: the ideal shape with the
-   * area or volume in the array at index 0 (SetInputArrayToProcess; points or cells). TENSOR: the
-   * ideal shape in the metric tensor in the array at index 1 (6 components xx yy zz xy yz xz, or 9;
-   * points or cells), in which the target edges have length 1. Values of point arrays are averaged
-   * over each cell. The default is IDEAL.
+   * area or volume given by the array at index 0 (SetInputArrayToProcess; points or cells). TENSOR:
+   * the ideal shape in the metric tensor given by the array at index 1 (6 components xx yy zz xy yz
+   * xz, or 9; points or cells), in which the target edges have length 1. Values of point arrays are
+   * averaged over each cell. The default is IDEAL.
    */
   vtkTautlineSetRangeMacro(TargetType, int, IDEAL, TENSOR);
   vtkGetMacro(TargetType, int);
@@ -200,8 +201,8 @@ public:
 
   ///@{
   /**
-   * Beta of the untangling metric: the area or volume every element should have at least, in
-   * length^n. The default is 0: not inverted.
+   * Beta of the untangling metric: the minimum area or volume that every element should have, in
+   * length^n. The default is 0 (not inverted).
    */
   vtkSetMacro(Beta, double);
   vtkGetMacro(Beta, double);
@@ -221,28 +222,28 @@ public:
   };
   ///@{
   /**
-   * What to do with a mesh whose cells all list their points in the opposite order.
-   * MEASURE_AS_GIVEN: its elements count as inverted. MEASURE_FLIPPED: measured as if flipped, the
-   * output keeps the input's cells. FLIP_OUTPUT: the output's cells are flipped too (unstructured
-   * grids and poly data of linear cells). It is reported in each case. The default is
-   * MEASURE_FLIPPED.
+   * The treatment of a mesh whose cells all list their points in the opposite order.
+   * MEASURE_AS_GIVEN: its elements count as inverted. MEASURE_FLIPPED: it is measured as if
+   * flipped, and the output keeps the input's cells. FLIP_OUTPUT: the output's cells are also
+   * flipped (unstructured grids and poly data of linear cells). The reversal is reported in each
+   * case. The default is MEASURE_FLIPPED.
    */
   vtkTautlineSetRangeMacro(ReversedMesh, int, MEASURE_AS_GIVEN, FLIP_OUTPUT);
   vtkGetMacro(ReversedMesh, int);
   ///@}
 
   ///@{
-  /// Rows of the table Distribution, and bins of the table Histogram. The default is 32.
+  /// Number of rows of the table Distribution, and of bins of the table Histogram. The default is
+  /// 32.
   vtkTautlineSetRangeMacro(HistogramBins, int, 1, 100000);
   vtkGetMacro(HistogramBins, int);
   ///@}
 
   ///@{
   /**
-   * Whether the mesh gets the cell array JacobianBound: a certified lower bound of the smallest
-   * Jacobian determinant in the cell, as min_jacobian has it; of a cell of a surface in space, of
-   * the component of its normal along the mean normal. 0 where it is not measured. The default is
-   * off.
+   * Whether to add the cell array JacobianBound: a certified lower bound of the smallest Jacobian
+   * determinant in the cell, as in min_jacobian; for a cell of a surface in space, of the component
+   * of its normal along the mean normal. 0 if it is not measured. The default is off.
    */
   vtkSetMacro(JacobianBounds, bool);
   vtkGetMacro(JacobianBounds, bool);
@@ -259,22 +260,22 @@ public:
   ///@{
   /**
    * Quality criteria: the name of a preset (GetCriteriaPresets()), the name of a JSON file, or JSON
-   * text, see tautline/Quality/Criteria.h. Their metrics are measured too. Whether they are right
-   * is checked on execution. The default, "", is none.
+   * text, see tautline/Quality/Criteria.h. Their metrics are also measured. They are validated on
+   * execution. The default is "", no criteria.
    */
   void SetCriteria(const char* criteria);
   const char* GetCriteria() const { return this->Criteria.c_str(); }
   ///@}
-  /// The names of the presets, tab-separated; the JSON text of one ("" if there is no such preset).
+  /// The names of the presets, tab-separated; the JSON text of a preset ("" if it does not exist).
   static std::string GetCriteriaPresets();
   static std::string GetCriteriaPreset(const char* name);
 
   ///@{
   /**
    * Checks of solvers and preprocessors by their own definitions: names, separated by commas, or
-   * "all"; see GetKnownCheck() and tautline/Quality/ElementChecks.h. Each is a cell array of its
-   * name, 0 where a cell has no value; the summary has its range. Whether they are known is
-   * checked on execution. The default, "", is none.
+   * "all"; see GetKnownCheck() and tautline/Quality/ElementChecks.h. Each gives a cell array with
+   * its name, 0 if a cell has no value; the summary has its range. Unknown names are an error on
+   * execution. The default is "", no checks.
    */
   void SetChecks(const char* checks);
   const char* GetChecks() const { return this->Checks.c_str(); }
@@ -292,7 +293,7 @@ public:
   /**
    * The verdict of the last execution by the criteria: "passed", "warning", "failed", "none" if no
    * element could be graded, or "" without criteria; and the quality index of the mesh, 0 (ideal)
-   * to 1. On several processes, of the whole.
+   * to 1. With several processes, for the whole mesh.
    */
   const char* GetVerdict() const { return this->Verdict.c_str(); }
   double GetQualityIndex() const { return this->QualityIndex; }
@@ -306,10 +307,10 @@ public:
   };
   ///@{
   /**
-   * Which OpenFOAM computes the centers of faces for metrics of finite volumes: ESI
-   * (openfoam.com) or FOUNDATION (openfoam.org); they differ for warped faces only, see
-   * tautline/FiniteVolume/FaceGeometry.h. BY_CRITERIA: that of the criteria, or ESI. The default is
-   * BY_CRITERIA.
+   * The OpenFOAM variant whose face centers are used for finite-volume metrics: ESI (openfoam.com)
+   * or FOUNDATION (openfoam.org); they differ only for warped faces, see
+   * tautline/FiniteVolume/FaceGeometry.h. BY_CRITERIA: the variant of the criteria, or ESI. The
+   * default is BY_CRITERIA.
    */
   vtkTautlineSetRangeMacro(FaceConvention, int, BY_CRITERIA, FOUNDATION);
   vtkGetMacro(FaceConvention, int);
@@ -323,8 +324,8 @@ public:
   };
   ///@{
   /**
-   * Which faces the output Faces has, where metrics of finite volumes are measured: none, those
-   * that fail a check and those of cells that do, or all. The default is FAILED_FACES.
+   * The faces in the output Faces if finite-volume metrics are measured: none, faces that fail a
+   * check or belong to a cell that does, or all. The default is FAILED_FACES.
    */
   vtkTautlineSetRangeMacro(FaceOutput, int, NO_FACES, ALL_FACES);
   vtkGetMacro(FaceOutput, int);
@@ -332,8 +333,8 @@ public:
 
   ///@{
   /**
-   * How many checks of OpenFOAM's checkMesh the mesh of the last execution fails: without options,
-   * and with -allTopology and -allGeometry. -1: no metric of finite volumes was measured.
+   * The number of OpenFOAM's checkMesh checks that the mesh of the last execution fails: without
+   * options, and with -allTopology and -allGeometry. -1 if no finite-volume metric was measured.
    */
   vtkGetMacro(FailedChecks, int);
   vtkGetMacro(FailedChecksOfAll, int);
@@ -362,7 +363,7 @@ public:
   /**
    * The registry of metrics as text, for scripts and documentation: metric i as one line of
    * tab-separated fields (empty if there is no such metric), and the names of the fields. The
-   * built-in metrics come first, then those that were registered.
+   * built-in metrics come first, followed by registered metrics.
    */
   static int GetNumberOfKnownMetrics();
   static int GetNumberOfBuiltInMetrics();
@@ -370,11 +371,11 @@ public:
   static std::string GetKnownMetricFields();
   ///@}
 
-  /// ParaView settings, as JSON text: the colour maps of the arrays of the metrics and of Validity.
+  /// ParaView settings, as JSON text: the color maps of the metric arrays and of Validity.
   static std::string GetColorMapSettings();
 
-  /// Remarks on how the last mesh was interpreted (orientation, cells left out), or "". On several
-  /// processes, on the first those on the whole mesh, on the others "".
+  /// Remarks on the interpretation of the last mesh (orientation, cells left out), or "". With
+  /// several processes, the first has the remarks on the whole mesh, the others "".
   const char* GetNotice() const { return this->Notice.c_str(); }
   /// Bytes allocated beyond input and output arrays at the peak of the last execution.
   double GetWorkingBytes() const { return this->WorkingBytes; }
@@ -398,23 +399,23 @@ private:
   void Measure(const tautline::InputBlock& block, const tautline::PieceOrientations& pieces,
     const tautline::PieceFaces& pieceFaces, tautline::QualityTotals& totals,
     tautline::CriteriaGrader& grader, tautline::BadElements& bad, tautline::FaceTotals& faces);
-  /// @param faces null: none @param alone whether they are of a whole mesh, whose checks are to be
+  /// @param faces null for none @param alone whether they belong to a whole mesh, whose checks are
   /// added
   void CheckFaces(tautline::FaceQuality* faces, bool alone, tautline::FaceTotals& totals);
   tautline::FaceConvention ConventionOf(const tautline::CriteriaGrader& grader) const;
-  /// @param piece what was found of the whole mesh; null: that of this data set is
+  /// @param piece the findings on the whole mesh; null to find them for this data set
   void SettleOrientation(tautline::MeshAdapter& adapter, const tautline::OrientedPiece* piece,
     signed char* validity, vtkDataSet* output);
-  /// The curved cells of a block, certified; adds what is remarked and found to the output.
+  /// Certifies the curved cells of a block; adds remarks and results to the output.
   std::unique_ptr<tautline::CurvedQuality> CertifyCurved(
     vtkDataSet* input, const tautline::MeshAdapter& adapter, signed char* validity);
   void MeasureChecks(vtkDataSet* input, const tautline::MeshAdapter& adapter,
     const signed char* validity, const unsigned char* skip, tautline::QualityTotals& totals,
     vtkDataSet* output);
-  /// Which of the metrics hold for the whole curved cell.
+  /// Adds a remark on the metrics that hold for the whole curved cell.
   void AddCurvedNotice(const tautline::CurvedQuality& curved,
     const std::vector<tautline::Metric>& metrics, const tautline::EvaluationOptions& options);
-  /// The cell array JacobianBound.
+  /// Adds the cell array JacobianBound.
   void AddBounds(vtkDataSet* input, const tautline::MeshAdapter& adapter, vtkDataSet* output);
   void AddToNotice(const std::string& sentences);
   tautline::Targets MakeTargets(

@@ -33,7 +33,7 @@
 
 vtkStandardNewMacro(vtkMeshComparison);
 
-/// What is added up over the blocks.
+/// The totals over the blocks.
 struct vtkMeshComparison::Totals
 {
   std::vector<tautline::Metric> metrics;
@@ -55,7 +55,7 @@ double* addCellArray(vtkDataSet* output, const std::string& name)
   return array->GetPointer(0);
 }
 
-/// The same of signed characters.
+/// The same for signed characters.
 signed char* addFlags(vtkDataSet* output, const char* name)
 {
   vtkNew<vtkSignedCharArray> array;
@@ -96,7 +96,7 @@ void settleOrientation(tautline::MeshAdapter& before, tautline::MeshAdapter& aft
   Orientation first = before.mesh().orientation(validBefore);
   if (first.state == Orientation::Mixed)
   {
-    // What is the wrong way round in one of them only is inverted there.
+    // Cells that are reversed in only one of the meshes count as inverted there.
     after.mesh().classifyCells(validAfter, threads);
     std::vector<unsigned char> reverse = consistentOrder(before.mesh(), validBefore).reverse;
     const std::vector<unsigned char> other = consistentOrder(after.mesh(), validAfter).reverse;
@@ -226,16 +226,16 @@ void vtkMeshComparison::Compare(
   if (!difference.empty())
   {
     throw Error("The meshes have different connectivity: " + difference +
-      ". Compare meshes that differ in their coordinates only.");
+      ". Compare meshes that differ only in their coordinates.");
   }
   const unsigned char* skip = is.ghostCells();
   const auto stepAt = [&](double step)
   {
-    const double steps = static_cast<double>(totals.metrics.size()) + 1.0; // with the checks
+    const double steps = static_cast<double>(totals.metrics.size()) + 1.0; // including the checks
     return (totals.blocksDone + step / steps) / totals.blocks;
   };
   std::optional<ProgressStep> progress(std::in_place, this, stepAt(0.0), stepAt(1.0));
-  constexpr std::size_t arrays = 3; // of each metric
+  constexpr std::size_t arrays = 3; // per metric
   requireMemory(static_cast<double>(is.mesh().view().numberOfCells) *
       static_cast<double>(arrays * totals.metrics.size() * sizeof(double)),
     "the arrays of " + std::to_string(totals.metrics.size()) + " metrics",

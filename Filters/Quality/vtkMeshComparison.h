@@ -1,49 +1,49 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkMeshComparison
- * @brief What changed, element by element, between two meshes of equal connectivity.
+ * @brief Compares two meshes of equal connectivity element by element.
  *
- * Compares a mesh before and after something moved its points: perturbation, smoothing, warping.
- * For each metric chosen it shows where elements became better or worse and by how much, and counts
- * them.
+ * Compares a mesh before and after its points were moved, for example by perturbation, smoothing or
+ * warping. For each chosen metric it shows where elements became better or worse and by how much,
+ * and counts them.
  *
  * Validity comes first: an element that becomes valid is better, one that becomes degenerate or
- * inverted is worse. Between two valid elements (and two inverted ones, where the metric orders
- * these, as untangling metrics do) the values are compared, by the direction of the metric. They
- * count as equal if they differ by no more than Tolerance times the larger magnitude; for metrics
- * without a unit whose ideal value is 0, times 1 if that is more. A neutral metric (the size) makes
- * no valid element better or worse.
+ * inverted is worse. Between two valid elements (and two inverted ones, if the metric ranks these,
+ * as untangling metrics do) the values are compared by the direction of the metric. They count as
+ * equal if they differ by at most Tolerance times the larger magnitude; for unitless metrics with
+ * ideal value 0, at least times 1. With a neutral metric (the size) no valid element becomes better
+ * or worse.
  *
  * @par Inputs:
- * Port 0 `Input`: the mesh before; port 1 `Other`: the mesh after. Both any vtkDataSet with the
- * same number of points and the same cells with the same points, in the same order; or two
- * composite data sets of the same structure whose blocks are such pairs. Other meshes are refused,
- * and the first difference named. If both meshes are reversed throughout, both are treated as their
- * mirror images.
+ * Port 0 `Input`: the mesh before; port 1 `Other`: the mesh after. Both may be any vtkDataSet with
+ * the same number of points and the same cells with the same points, in the same order; or two
+ * composite data sets of the same structure whose blocks are such pairs. Other meshes are rejected
+ * with an error that names the first difference. If both meshes are reversed throughout, both are
+ * treated as their mirror images.
  *
  * @par Output port 0:
  * The second mesh with its data, and these arrays. Cells: `<metric>_before`, `<metric>_after`,
  * `<metric>_difference` (after minus before) for each metric (double; `imr_before`, ...);
  * `Validity_before`, `Validity_after` and `Change` (signed char). `Change` is 1 if the element
- * became better in some metric and worse in none, -1 if worse in some and better in none, else 0.
- * Points: `Displacement` (3 components, double), second minus first position.
+ * became better in some metric and worse in none, -1 if worse in some and better in none, otherwise
+ * 0. Points: `Displacement` (3 components, double), second minus first position.
  *
  * @par Output port 1 `Comparison`:
  * A vtkTable with a row per metric: `Metric` (its name); `Better`, `Worse`, `Equal`, numbers of
  * elements on which the metric is defined, ghost cells left out; `InvertedBefore`, `InvertedAfter`,
  * numbers of inverted elements; `MinimumBefore`, `MinimumAfter`, `MeanBefore`, `MeanAfter`,
- * `MaximumBefore`, `MaximumAfter` over the valid and the inverted elements (0 without any);
- * `LargestDisplacement`. For composite data, over all
- * blocks.
+ * `MaximumBefore`, `MaximumAfter` over the valid and inverted elements (0 if there are none);
+ * `LargestDisplacement`. For composite data, over all blocks.
  *
  * @par Limitations:
- * Metrics take the ideal cell as their target and the mean over the corners of a cell.
+ * Metrics use the ideal cell as their target and the mean over the corners of a cell.
  *
  * @par Several processes:
- * The first process has both meshes while it computes, and the pieces of the second one get the
- * results; the table is on the first process. The meshes may be cut differently: their points and
- * cells are then matched by the global ids of the points (Generate Global Ids), or else by the
- * order of the coordinates, if the points have not moved. Ghost cells do not count.
+ * Both meshes are gathered on the first process, and the results go back to the pieces of the
+ * second one; the table is on the first process. The meshes may be divided differently: their
+ * points and cells are then matched by the global ids of the points (Generate Global Ids), or
+ * otherwise by the order of the coordinates, if the points have not moved. Ghost cells do not
+ * count.
  *
  * @par Example:
  * @code

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkMetricAlgorithm
- * @brief Base class of the filters that evaluate quality metrics: the list of metrics.
+ * @brief Base class of filters that evaluate quality metrics; holds the list of metrics.
  *
  * Abstract. A metric is given by its number (enum Metric of tautline/Quality/Metrics.h) or by its
  * name, label, symbol or alias; vtkElementQuality::GetKnownMetric() lists them. A metric that is
- * added again stays once, in its first place. If none is added, the inverse mean ratio is
+ * added again keeps its first position in the list. If none is added, the inverse mean ratio is
  * evaluated.
  *
  * @sa vtkElementQuality, vtkMeshComparison, vtkMetricField, vtkTautlineTimedAlgorithm
@@ -32,7 +32,7 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /// Adds a metric. An unknown one is an error and changes nothing; the number of a user's metric
+  /// Adds a metric. An unknown metric is an error and changes nothing; the number of a user metric
   /// that is not registered in this process is an error when the filter executes.
   void AddMetric(int metric);
   void AddMetricByName(const char* name);
@@ -41,8 +41,7 @@ public:
   void ClearMetrics();
   /// The number of metrics added.
   int GetNumberOfMetrics() const;
-  /// The metrics that were registered (vtkUserMetric, libraries): a line "number<tab>label<tab>..."
-  /// each.
+  /// The registered metrics (vtkUserMetric, libraries), one line "number<tab>label<tab>..." each.
   static std::string GetUserMetrics();
 
 protected:

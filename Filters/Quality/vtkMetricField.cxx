@@ -111,8 +111,8 @@ int vtkMetricField::RequestData(
         if (this->Dimensions[c] < 1 || !increases || !std::isfinite(length))
         {
           throw tautline::Error(std::string("Along ") + "xyz"[c] +
-            ", Bounds must increase and be finite, and Dimensions be at least 1; equal bounds need "
-            "dimension 1.");
+            ", Bounds must increase and be finite, and Dimensions must be at least 1; equal bounds "
+            "need dimension 1.");
         }
       }
       const tautline::MetricField field(
@@ -131,7 +131,7 @@ int vtkMetricField::RequestData(
       tautline::requireMemory(static_cast<double>(grid.count()) *
           static_cast<double>(1 + metrics.size() * sizeof(double)),
         "the field", "choose smaller Dimensions or fewer metrics");
-      const auto stepAt = [&](std::size_t step) // each metric is one, the signs are the last
+      const auto stepAt = [&](std::size_t step) // one per metric, then one for the signs
       { return static_cast<double>(step) / static_cast<double>(metrics.size() + 1); };
       for (std::size_t i = 0; i < metrics.size() && !this->GetAbortExecute(); ++i)
       {

@@ -3,15 +3,15 @@
  * @class vtkMetricField
  * @brief A quality metric of a triangle or tetrahedron as a function of its last vertex.
  *
- * Two vertices of a triangle, or three of a tetrahedron, are held fixed. At every point of a grid
- * stands the value the metric has with the last vertex there: contours show which shapes a metric
- * prefers and how strongly it penalizes the others. The defaults are those of dissertation Figures
- * 2.1 and 3.1: the base from (0, 0) to (1, 0), the free vertex in [-1, 2] x [0, 2].
+ * Two vertices of a triangle, or three of a tetrahedron, are held fixed. The value at each grid
+ * point is the metric with the last vertex there: contours show which shapes a metric prefers and
+ * how strongly it penalizes others. The defaults are as in dissertation Figures 2.1 and 3.1: the
+ * base from (0, 0) to (1, 0), the free vertex in [-1, 2] x [0, 2].
  *
- * A triangle lies in the plane z = 0; the third numbers of Vertex1, Vertex2, Bounds and Dimensions
- * do not matter to it. It is positive with the free vertex left of the line from Vertex1 to Vertex2
- * (with the defaults, above the base). A tetrahedron is positive with the free vertex on the side
- * from which Vertex1, Vertex2, Vertex3 run counter-clockwise (with the defaults, z > 0).
+ * A triangle lies in the plane z = 0; the z components of Vertex1, Vertex2, Bounds and Dimensions
+ * have no effect. It is positive if the free vertex is left of the line from Vertex1 to Vertex2
+ * (with the defaults, above the base). A tetrahedron is positive if the free vertex is on the side
+ * from which Vertex1, Vertex2, Vertex3 run counterclockwise (with the defaults, z > 0).
  *
  * @par Output:
  * vtkImageData with a point array (double) per metric, named by the metric (`imr`, `si`, ...), the
@@ -19,12 +19,12 @@
  * inverted.
  *
  * @par Limitations:
- * Values are always finite: where the cell is degenerate, metrics that are singular there are 0. On
- * the base itself the inverse mean ratio therefore drops from large values to 0; contours and
- * colour ranges are cleaner with Bounds that start slightly above it, or after a Threshold of
- * Validity at 1. Metrics take the ideal cell with edges of length 1 as their target. A metric whose
- * values are beyond the range of double precision is refused (`mu_size_squared` at lengths of
- * 1e-150). Cells are computed relative to Vertex1, so that far from the origin nothing is lost.
+ * Values are always finite: metrics that are singular for degenerate cells are 0 there. On the base
+ * itself the inverse mean ratio therefore drops from large values to 0; contours and color ranges
+ * are cleaner with Bounds that start slightly above it, or after a Threshold of Validity at 1.
+ * Metrics use the ideal cell with edges of length 1 as their target. A metric whose values are
+ * beyond the range of double precision is an error (`mu_size_squared` at lengths of 1e-150). Cells
+ * are computed relative to Vertex1, so that no precision is lost far from the origin.
  *
  * @par Example:
  * @code
@@ -55,7 +55,7 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   /**
-   * Which cell the field is of.
+   * The types of cells.
    */
   enum Cells
   {
@@ -65,7 +65,7 @@ public:
 
   ///@{
   /**
-   * The cell: TRIANGLE (0) or TETRAHEDRON (1). The default is TRIANGLE.
+   * The type of the cell: TRIANGLE (0) or TETRAHEDRON (1). The default is TRIANGLE.
    */
   vtkTautlineSetRangeMacro(Cell, int, TRIANGLE, TETRAHEDRON);
   vtkGetMacro(Cell, int);
@@ -75,8 +75,8 @@ public:
 
   ///@{
   /**
-   * The fixed vertices. The defaults are (0, 0, 0), (1, 0, 0) and, used by the tetrahedron only,
-   * (0.5, 0.866..., 0): an equilateral base.
+   * The fixed vertices. The defaults are (0, 0, 0), (1, 0, 0) and, used only by the tetrahedron,
+   * (0.5, 0.866..., 0), which form an equilateral base.
    */
   vtkSetVector3Macro(Vertex1, double);
   vtkGetVector3Macro(Vertex1, double);
@@ -88,7 +88,7 @@ public:
 
   ///@{
   /**
-   * Where the free vertex goes: xmin, xmax, ymin, ymax, zmin, zmax. The default is -1, 2, 0, 2,
+   * The range of the free vertex: xmin, xmax, ymin, ymax, zmin, zmax. The default is -1, 2, 0, 2,
    * 0, 2.
    */
   vtkSetVector6Macro(Bounds, double);
@@ -105,7 +105,7 @@ public:
 
   ///@{
   /**
-   * Beta of the untangling metric: the area or volume that an element should have at least, in the
+   * Beta of the untangling metric: the minimum area or volume that an element should have, in the
    * unit of the vertices. The default is 0.25, as in dissertation Figure 3.1 (e); with 0 the metric
    * is 0 wherever the cell is not inverted.
    */

@@ -81,7 +81,7 @@ void vtkUserMetric::SetDirection(int direction)
 {
   if (direction < 0 || direction > 2)
   {
-    vtkErrorMacro(<< "The direction " << direction << " is none of 0, 1 and 2.");
+    vtkErrorMacro(<< "The direction " << direction << " is not 0, 1 or 2.");
     return;
   }
   this->TheFacts->direction = static_cast<tautline::Direction>(direction);
@@ -114,7 +114,7 @@ void vtkUserMetric::AddCellType(int type)
 //------------------------------------------------------------------------------
 bool vtkUserMetric::AddToRegistry()
 {
-  // The registry keeps the metric, and its observer.
+  // The registry keeps the metric and its observer.
   const vtkSmartPointer<vtkUserMetric> self = this;
   const auto evaluate =
     [self](tautline::CellType type, tautline::Index count, const double* points, double* values)

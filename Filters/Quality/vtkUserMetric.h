@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkUserMetric
- * @brief A metric whose values an observer computes: how Python registers a metric of its own.
+ * @brief A metric whose values are computed by an observer; used to register metrics in Python.
  *
- * Set the facts, add an observer of vtkCommand::UserEvent and call AddToRegistry(). The metric is
- * then known by its name to all filters that measure, to criteria and to ParaView's menus (of
- * proxies created afterwards). As an objective it takes derivatives by differences, with optimizers
- * that move all points together.
+ * Set the properties, add an observer of vtkCommand::UserEvent and call AddToRegistry(). The metric
+ * is then available by its name in all filters that measure, in criteria and in ParaView's menus
+ * (of proxies created afterwards). As an objective it uses derivatives by differences, with
+ * optimizers that move all points together.
  *
- * The event is invoked once for all cells of a type that are to be measured. The observer reads
- * GetCellType() and GetCorners() (a tuple x y z for each corner of each cell, cell after cell) and
- * fills GetValues(), which has a tuple per cell; on failure it calls SetFailure(). Values that are
- * not finite become 0. A planar mesh is seen in its plane (z is 0), counter-clockwise if valid; a
- * volume mesh that is reversed throughout is seen mirrored.
+ * The event is invoked once for all measured cells of a type. The observer reads GetCellType() and
+ * GetCorners() (a tuple x y z for each corner of each cell, cell after cell) and fills GetValues(),
+ * which has a tuple per cell; on failure it calls SetFailure(). Values that are not finite become
+ * 0. A planar mesh is given in its plane (z is 0), counterclockwise if valid; a volume mesh that is
+ * reversed throughout is given mirrored.
  *
  * @par Example (Python; tautline.register_metric() does this):
  * @code
@@ -46,9 +46,9 @@ public:
 
   ///@{
   /**
-   * The facts, as in tautline::MetricDescription. The name consists of lower case letters, digits
-   * and underscores; label and symbol are the name by default. They count when AddToRegistry() is
-   * called.
+   * The properties, as in tautline::MetricDescription. The name consists of lowercase letters,
+   * digits and underscores; label and symbol are the name by default. They take effect when
+   * AddToRegistry() is called.
    */
   void SetName(const char* text);
   void SetLabel(const char* text);
@@ -63,25 +63,25 @@ public:
   ///@}
   /// 0: smaller is better (the default), 1: larger is better, 2: neither.
   void SetDirection(int direction);
-  /// Whether the value of a cell does not change with its size or orientation. Checked.
+  /// Whether the value of a cell is independent of its size or orientation. This is checked.
   void SetInvariances(bool scale, bool rotation);
   ///@{
-  /// The VTK types of the cells it is defined on. The default is all six.
+  /// The VTK cell types for which the metric is defined. The default is all six.
   void ClearCellTypes();
   void AddCellType(int type);
   ///@}
 
-  /// Registers the metric. @return false after an error that names what is wrong.
+  /// Registers the metric. @return false after an error
   bool AddToRegistry();
-  /// Removes a registered metric. @return false after an error if there is none of the name.
+  /// Removes a registered metric. @return false after an error if it does not exist
   static bool RemoveFromRegistry(const char* name);
-  /// Loads a library that registers metrics. @return "" or what is wrong.
+  /// Loads a library that registers metrics. @return "" or the error message
   static std::string LoadLibrary(const char* file);
-  /// What was wrong with the libraries of the environment variable TAUTLINE_METRICS, or "".
+  /// The error messages for the libraries in the environment variable TAUTLINE_METRICS, or "".
   static std::string GetLoadErrors();
 
   ///@{
-  /// What the observer works on.
+  /// The data for the observer.
   int GetCellType() const { return this->CellType; }
   vtkDoubleArray* GetCorners();
   vtkDoubleArray* GetValues();

@@ -104,7 +104,7 @@ CellKinds::CellKinds(std::map<int, Index> counts)
     throw Error(listOf(ofDimension[this->dimension]) + ": Improve Mesh takes linear " + cells +
       " only; run " +
       (straight ? remedy + std::string(" first.")
-                : "Curve Mesh with order 1 first, which keeps the corners, and with the order of "
+                : "Curve Mesh with order 1 first to keep only the corners, and with the order of "
                   "these cells on the result."));
   }
   if (this->taken == 0)

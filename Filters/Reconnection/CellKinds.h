@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CellKinds.h
- * @brief Which data sets and cells Improve Mesh takes.
+ * @brief Checks which data sets and cells Improve Mesh supports.
  */
 #ifndef tautline_CellKinds_h
 #define tautline_CellKinds_h
@@ -16,13 +16,13 @@ class vtkPointSet;
 
 namespace tautline
 {
-/// The data set, if it can be a mesh of tetrahedra or triangles. Throws Error for others.
+/// The data set, if it can be a mesh of tetrahedra or triangles. Throws Error otherwise.
 vtkPointSet* meshOf(vtkDataSet* input);
 
-/// The number of cells of each type. @param ghosts whether copies of cells count
+/// The number of cells of each type. @param ghosts whether ghost cells count
 std::map<int, Index> countCells(vtkDataSet* input, bool ghosts);
 
-/// What a mesh is made of. Throws Error, with the remedy, for cells that are not taken.
+/// The kinds of cells in a mesh. Throws Error, with the remedy, for cells that are not supported.
 struct CellKinds
 {
   explicit CellKinds(std::map<int, Index> counts);
@@ -30,7 +30,7 @@ struct CellKinds
   int dimension = 3;   ///< 3: tetrahedra, 2: triangles
   Index taken = 0;     ///< their number
   std::string leftOut; ///< a sentence on cells of lower dimension, or ""
-  /// The same where lines beside triangles, and triangles beside tetrahedra, are in the output.
+  /// The same if lines beside triangles, and triangles beside tetrahedra, are in the output.
   std::string leftOutBesideMarks;
 };
 }

@@ -33,7 +33,7 @@ vtkSmartPointer<vtkDoubleArray> arrayOf(const char* name, const std::vector<doub
   return array;
 }
 
-/// Measures cells with their points at some coordinates. @return whether all are valid
+/// Measures cells with given point coordinates. @return whether all are valid
 bool measure(const Simplices& simplices, const std::vector<double>& coordinates, bool mirrored,
   int threads, ImprovedCells& measured)
 {
@@ -70,11 +70,11 @@ bool measure(const Simplices& simplices, const std::vector<double>& coordinates,
   return std::all_of(validity.begin(), validity.end(), [](signed char v) { return v == Valid; });
 }
 
-/// Whether the worst cells are worse than those of the input.
+/// Whether the worst cells are worse than in the input.
 bool isWorse(const ImprovedCells& measured, const ReconnectionRecord& before)
 {
   const std::vector<double>&angles = measured.smallestAngles, &ratios = measured.inverseMeanRatios;
-  // Both are measured here in another order of operations than in the kernel.
+  // Both are measured here with a different order of operations than in the kernel.
   constexpr double Rounding = 1e-9;
   return !angles.empty() &&
     (*std::min_element(angles.begin(), angles.end()) < before.smallestAngle - Rounding ||
@@ -82,7 +82,7 @@ bool isWorse(const ImprovedCells& measured, const ReconnectionRecord& before)
         before.worstInverseMeanRatio * (1.0 + Rounding));
 }
 
-/// The coordinates as single precision has them.
+/// The coordinates rounded to single precision.
 std::vector<double> toSinglePrecision(const std::vector<double>& coordinates)
 {
   std::vector<double> rounded(coordinates.size());

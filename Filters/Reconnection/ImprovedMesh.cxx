@@ -27,12 +27,12 @@ struct Geometry
   std::vector<Index> points; ///< of the result, in the order of the output
   std::vector<double> coordinates;
   Simplices cells;
-  /// Lines beside triangles, or triangles beside tetrahedra, and their cells of the input.
+  /// Lines beside triangles, or triangles beside tetrahedra, and their original cells in the input.
   Simplices marks;
   std::vector<Index> markOrigins;
 };
 
-/// The result without the points that were merged into another one.
+/// The result without merged points.
 Geometry geometryOf(const ReconnectableMesh& input, const ReconnectionResult& result)
 {
   Geometry geometry;
@@ -103,7 +103,7 @@ void writePointData(const ReconnectableMesh& input, const ReconnectionResult& re
 }
 
 /// Averages the arrays of real numbers over the cells of the input that each cell overlaps.
-/// @param first the number of the first one in the output
+/// @param first the index of the first cell in the output
 void averageCellData(const ReconnectableMesh& input, const CellOverlaps& overlaps,
   std::size_t first, vtkCellData* from, vtkCellData* to)
 {
@@ -158,7 +158,7 @@ ImprovedCells writeImproved(const ReconnectableMesh& input, const ReconnectionRe
   ReconnectionRecord floor = result.history.front();
   if (result.adapted)
   {
-    // The elements have another shape on purpose: any valid one will do.
+    // The elements deliberately have different shapes: any valid shape is acceptable.
     floor.smallestAngle = 0.0;
     floor.worstInverseMeanRatio = std::numeric_limits<double>::infinity();
   }

@@ -23,7 +23,8 @@ namespace tautline
 {
 namespace
 {
-/// A point of the output, where it is in the piece and in the result; -1: it is not there.
+/// A point of the output, with its index in the piece and in the result; -1 if it does not exist
+/// there.
 struct OutputPoint
 {
   Index ofPiece, ofResult;
@@ -35,7 +36,7 @@ Index placeOf(const std::vector<Index>& sorted, Index number)
   return at != sorted.end() && *at == number ? at - sorted.begin() : -1;
 }
 
-/// The points of the piece that remain, then others.
+/// The remaining points of the piece, then others.
 std::vector<OutputPoint> pointsOf(const ReconnectablePiece& piece, const RankReconnection& result)
 {
   std::vector<OutputPoint> points;

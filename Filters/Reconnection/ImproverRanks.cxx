@@ -63,7 +63,7 @@ bool vtkMeshImprover::TakesPieces(vtkInformationVector** inputs)
       input->GetNumberOfElements(vtkDataObject::CELL) > 0;
     if (this->Group && !this->Group->any(elsewhere))
     {
-      return false; // it is in one place
+      return false; // it is on one process
     }
     if (why.empty())
     {
@@ -85,7 +85,7 @@ bool vtkMeshImprover::TakesPieces(vtkInformationVector** inputs)
       this->Pieces.reset();
     }
   }
-  catch (const std::exception& error) // on all processes, which report it in RequestData()
+  catch (const std::exception& error) // on all processes, reported in RequestData()
   {
     this->PieceError = error.what();
     return true;
@@ -95,7 +95,7 @@ bool vtkMeshImprover::TakesPieces(vtkInformationVector** inputs)
 }
 
 //------------------------------------------------------------------------------
-/// Why the mesh of several processes has to be on one, or "". Throws Error on all processes.
+/// The reason why the mesh must be gathered on one process, or "". Throws Error on all processes.
 std::string vtkMeshImprover::FindReasonToGather(vtkDataObject* input)
 {
   tautline::RankGroup& group = *this->Group;
@@ -150,7 +150,7 @@ void vtkMeshImprover::ImproveOnRanks(vtkInformationVector** inputVector, vtkData
   vtkDataArray* regions = tautline::chosenArray(
     this, tautline::ImproverArrays::Region, input, "of regions", tautline::ArrayOf::Cells);
   tautline::ReconnectablePiece piece = tautline::takePiece(group, *mesh, input, regions);
-  mesh.reset(); // its memory
+  mesh.reset(); // frees its memory
   tautline::ReconnectionOptions options;
   constexpr double onlyBlock = 0.0, blocks = 1.0;
   this->PrepareOptions(options, onlyBlock, blocks);
@@ -174,7 +174,7 @@ void vtkMeshImprover::ImproveOnRanks(vtkInformationVector** inputVector, vtkData
   whole.markedFacets = result.markedFacets;
   whole.forcedInverseMeanRatio = result.forcedInverseMeanRatio;
   const bool first = group.rank() == 0;
-  tautline::TableRows unused; // tables of several processes would be joined
+  tautline::TableRows unused; // otherwise tables of several processes would be joined
   this->Report(whole, std::move(left),
     { "",
       "In parts on " + std::to_string(group.size()) + " processes, in " +

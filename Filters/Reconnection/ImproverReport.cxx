@@ -20,36 +20,36 @@ constexpr int ListedElements = 10;
 using Reasons = std::array<const char*, 6>;
 constexpr Reasons obstacles = { "it is not below the target",
   "no operation improves it, or a limit ended the run",
-  "a facet that it has on the boundary or between regions allows no better one",
+  "one of its facets on the boundary or between regions allows no better element",
   "it has a fixed point", "it has a point between regions", "it has a point on the boundary" };
 
-/// What would help, in the same order.
+/// The remedies, in the same order.
 constexpr Reasons remedies = { "", "try the preset Aggressive, a larger time limit or other counts",
-  "let the boundary slide on flat parts or on the surface, or repair the surface mesh",
+  "allow the boundary to slide on flat parts or on the surface, or repair the surface mesh",
   "fix fewer points", "choose fewer regions",
-  "let the boundary slide on flat parts or on the surface" };
-/// The same where the boundary slides on flat parts, and where it does so on the surface.
+  "allow the boundary to slide on flat parts or on the surface" };
+/// The same if the boundary slides on flat parts, and if it slides on the surface.
 constexpr Reasons remediesOfSliding = { "", remedies[1],
-  "let the boundary slide on the surface, or repair the surface mesh", remedies[3], remedies[4],
-  "let the boundary slide on the surface" };
+  "allow the boundary to slide on the surface, or repair the surface mesh", remedies[3],
+  remedies[4], "allow the boundary to slide on the surface" };
 constexpr Reasons remediesOnSurface = { "", remedies[1], "repair the surface mesh", remedies[3],
   remedies[4], "choose a larger Feature Angle, or repair the surface mesh" };
 
 /// The same for triangles.
 constexpr Reasons edgeObstacles = { "it is not below the target",
   "no operation improves it, or a limit ended the run",
-  "the angle between two edges that are kept allows no better one", "it has a fixed point",
+  "the angle between two kept edges allows no better element", "it has a fixed point",
   "it has a point between regions or on a sharp edge", "it has a point on the border" };
 constexpr Reasons edgeRemedies = { "",
   "try the preset Aggressive, a larger time limit, other counts or, on a surface, a larger surface "
   "distance",
   "change the geometry", "fix fewer points",
-  "let the boundary slide on flat parts, choose fewer regions or a larger feature angle",
-  "let the boundary slide on flat parts" };
+  "allow the boundary to slide on flat parts, choose fewer regions or a larger feature angle",
+  "allow the boundary to slide on flat parts" };
 constexpr Reasons edgeRemediesOfSliding = { "", edgeRemedies[1], edgeRemedies[2], edgeRemedies[3],
   "choose fewer regions or a larger feature angle", "change the geometry" };
 
-/// How the elements and their angles are called.
+/// The names of the elements and of their angles.
 struct Words
 {
   const char *one, *many, *title, *angle;
@@ -64,7 +64,7 @@ const Words& wordsOf(bool isTriangles)
   return isTriangles ? triangles : tetrahedra;
 }
 
-/// What would help where the boundary may move as it does.
+/// The remedies for the given freedom of the boundary.
 const Reasons& remediesFor(bool isTriangles, BoundaryMotion boundary)
 {
   const bool fixed = boundary == BoundaryMotion::Fixed;
@@ -108,7 +108,7 @@ const char* reasonText(StopReason reason)
     case StopReason::Reduction:
       return "Every element has reached the target.";
     case StopReason::NoProgress:
-      return "No operation improves the worst elements any further.";
+      return "No operation improves the worst elements further.";
     default:
       return describe(reason);
   }
@@ -117,8 +117,8 @@ const char* reasonText(StopReason reason)
 //------------------------------------------------------------------------------
 double inverseMeanRatioOf(const ReconnectionRecord& record, bool isTriangles)
 {
-  // The quality of tetrahedra is (mean ratio)^(3/2), that of triangles the mean ratio.
-  constexpr double largest = 1e30; // of a flat element
+  // The quality is (mean ratio)^(3/2) for tetrahedra, and the mean ratio for triangles.
+  constexpr double largest = 1e30; // for a flat element
   const double q = record.worstQuality;
   return q > 0.0 ? std::min(isTriangles ? 1.0 / q : 1.0 / std::cbrt(q * q), largest) : largest;
 }
@@ -191,7 +191,7 @@ void addRemaining(TableRows& rows, const std::vector<RemainingElement>& remainin
   {
     return;
   }
-  // Column by column: rows of cells in any order are slow to collect, and there may be many.
+  // Column by column: collecting rows of cells in arbitrary order is slow, and there may be many.
   rows.begin();
   if (!block.empty())
   {
@@ -254,15 +254,15 @@ std::string describeResult(const ReconnectionResult& result, bool isTriangles)
   {
     text << "\n"
          << result.ignoredMarks << (isTriangles ? " lines" : " triangles")
-         << " beside the mesh are left out: they are none of its "
-         << (isTriangles ? "edges" : "facets") << ", or there twice.";
+         << " beside the mesh are left out: they are not among its "
+         << (isTriangles ? "edges" : "facets") << ", or are duplicates.";
   }
   if (result.volumeBefore != 0.0)
   {
     text << "\n";
     if (!isTriangles)
     {
-      text << "Largest distance between the boundary and that of the input: "
+      text << "Largest distance between the boundaries of the output and the input: "
            << result.boundaryDistance << ". ";
     }
     text << "Volume: " << result.volumeBefore << " to " << result.volumeAfter << ".";
@@ -294,10 +294,10 @@ std::string describeRemaining(const std::vector<RemainingElement>& remaining, bo
        << (remaining.size() == 1 ? " remains" : " remain") << " below the target" << target.str();
   const auto byShape = std::count_if(remaining.begin(), remaining.end(),
     [targetAngle](const RemainingElement& one) { return one.smallestAngle >= targetAngle; });
-  // The quality of an element is also that of its largest angle and, by objective, of its shape.
+  // The quality of an element also depends on its largest angle and, by objective, on its shape.
   text << (byShape == 0 || targetAngle == 0.0
               ? ""
-              : ", " + std::to_string(byShape) + " of them by a large angle or shape")
+              : ", " + std::to_string(byShape) + " of them because of a large angle or their shape")
        << ":";
   std::array<Index, obstacles.size()> counts = {};
   for (const RemainingElement& element : remaining)

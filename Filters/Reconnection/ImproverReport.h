@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ImproverReport.h
- * @brief What Improve Mesh reports: the tables and the sentences of the summary.
+ * @brief The report of Improve Mesh: the tables and the sentences of the summary.
  */
 #ifndef tautline_ImproverReport_h
 #define tautline_ImproverReport_h
@@ -22,10 +22,10 @@ constexpr int Fixed = 0, Region = 1, Size = 2, Changing = 3;
 
 class TableRows;
 
-/// An element that is still below the target. Sent between processes as bytes.
+/// An element below the target. Sent between processes as bytes.
 struct RemainingElement
 {
-  Index cell; ///< of the output
+  Index cell; ///< in the output
   double smallestAngle, inverseMeanRatio;
   Vec3 center;
   double quality, bound;
@@ -34,16 +34,16 @@ struct RemainingElement
 
 /**
  * @brief The elements below the target.
- * @param obstacles,qualities,bounds one per cell, as those of ReconnectionResult
+ * @param obstacles,qualities,bounds one per cell, as in ReconnectionResult
  * @param first the number of the first cell
  */
 std::vector<RemainingElement> remainingOf(const std::vector<signed char>& obstacles,
   const std::vector<double>& qualities, const std::vector<double>& bounds,
   const ImprovedCells& improved, Index first = 0);
-/// Sorts them: the smallest angle first.
+/// Sorts the elements, with the smallest angle first.
 void sortWorstFirst(std::vector<RemainingElement>& remaining);
 
-/// What the summary says of a run.
+/// The remarks on a run in the summary.
 struct ImproverRemarks
 {
   std::string block;                      ///< or ""
@@ -53,26 +53,28 @@ struct ImproverRemarks
   double targetAngle;
 };
 
-/// The largest inverse mean ratio in the metric, after an adaptation: of the smallest quality.
+/// The largest inverse mean ratio in the metric, after an adaptation: from the smallest quality.
 double inverseMeanRatioOf(const ReconnectionRecord& record, bool isTriangles);
 
-/// Why a run ended.
+/// The reason why a run ended.
 const char* reasonText(StopReason reason);
 
 /// Adds the rows of output History. @param adapted whether they are of an adaptation
 void addHistory(TableRows& rows, const std::vector<ReconnectionRecord>& history,
   const std::string& block, bool adapted);
-/// Adds the rows of output Remaining. @param isTriangles whether the elements are; else tetrahedra
+/// Adds the rows of output Remaining. @param isTriangles whether the elements are triangles,
+/// otherwise tetrahedra
 void addRemaining(TableRows& rows, const std::vector<RemainingElement>& remaining, bool isTriangles,
   const std::string& block);
 
-/// Before and after, in words.
+/// Sentences on the qualities before and after.
 std::string describeResult(const ReconnectionResult& result, bool isTriangles);
-/// What remains below the target, why, and which are the worst.
+/// Sentences on the elements below the target, the reasons, and the worst of them.
 /// @param targetAngle in degrees; 0 after an adaptation, whose target is a quality in the metric
 std::string describeRemaining(const std::vector<RemainingElement>& remaining, bool isTriangles,
   BoundaryMotion boundary, double targetAngle);
-/// What the boundary forces on any mesh, if something remains.
+/// A sentence on the bound that the boundary imposes on any mesh, if elements remain below the
+/// target.
 std::string describeForced(
   const std::vector<RemainingElement>& remaining, bool isTriangles, double forcedInverseMeanRatio);
 }

@@ -41,15 +41,16 @@ void refuseGhosts(vtkDataSet* grid)
   if (ghosts > 0)
   {
     throw Error(std::to_string(ghosts) +
-      " ghost or hidden cells: the connectivity of a part of a mesh cannot change on its own; "
-      "gather the mesh in one process and run Remove Ghost Information first.");
+      " ghost or hidden cells: the connectivity of a part of a mesh cannot be changed separately; "
+      "gather the mesh on one process and run Remove Ghost Information first.");
   }
 }
 }
 
 namespace
 {
-/// The number of the values that some arrays have on each cell, from 0 on as they occur.
+/// Numbers the combinations of values that some arrays have on each cell, from 0 in order of
+/// occurrence.
 std::vector<Index> numbersOf(
   const std::vector<vtkDataArray*>& arrays, const std::vector<Index>& cells)
 {
@@ -112,7 +113,8 @@ ReconnectableMesh::ReconnectableMesh(vtkDataSet* input, bool mergePoints, int th
 }
 
 //------------------------------------------------------------------------------
-/// Finds whether the mesh is of tetrahedra or triangles, and leaves out cells of lower dimension.
+/// Finds whether the mesh consists of tetrahedra or triangles, and leaves out cells of lower
+/// dimension.
 void ReconnectableMesh::findKind()
 {
   const CellKinds kinds(countCells(this->Input, true));
@@ -234,7 +236,7 @@ std::vector<vtkDataArray*> ReconnectableMesh::tagArrays(
   for (int a = 0; a < data->GetNumberOfArrays(); ++a)
   {
     vtkDataArray* array = data->GetArray(a);
-    // The numbers of the cells of an input before, which several cells may share, are no tags.
+    // Cell numbers of an earlier input, which several cells may share, are not tags.
     const bool ids = array &&
       (array == data->GetGlobalIds() || array == data->GetPedigreeIds() ||
         (array->GetName() && std::string(array->GetName()) == OriginalCellArray));
@@ -309,7 +311,7 @@ std::string ReconnectableMesh::setRegionsByTags()
   {
     names += (names.empty() ? "" : ", ") + std::string(array->GetName() ? array->GetName() : "");
   }
-  return "Regions that are kept are those of the tags " + names +
+  return "The regions that are kept are defined by the tags " + names +
     ": choose an array under Regions for others.";
 }
 

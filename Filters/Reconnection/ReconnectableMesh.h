@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ReconnectableMesh.h
- * @brief The input of Improve Mesh as the kernel takes it: its tetrahedra or triangles, fixed
+ * @brief Converts the input of Improve Mesh for the kernel: its tetrahedra or triangles, fixed
  * points and regions.
  */
 #ifndef tautline_ReconnectableMesh_h
@@ -22,9 +22,9 @@ class vtkPointSet;
 
 namespace tautline
 {
-/// Throws Error for an array that has not one number per cell; null is taken.
+/// Throws Error for an array that does not have one number per cell; null is accepted.
 void requireNumbers(vtkDataArray* regions);
-/// The region of a cell. Throws Error for a value that is none.
+/// The region of a cell. Throws Error for a value that is not a region number.
 double regionAt(vtkDataArray* regions, Index cell);
 
 /**
@@ -32,17 +32,17 @@ double regionAt(vtkDataArray* regions, Index cell);
  * @brief The tetrahedra of an unstructured grid, or the triangles of a mesh without volume cells,
  * oriented consistently: see MeshAdapter::orient().
  *
- * The data set must outlive it and not change meanwhile.
+ * The data set must outlive this object and must not change during its lifetime.
  */
 class ReconnectableMesh
 {
 public:
   /**
-   * @brief Throws Error that names the remedy for other data sets, for cells of volume that are not
-   * linear tetrahedra, where there are none for cells of area that are not linear triangles, for
-   * ghost cells, and where there are neither.
-   * Cells of lower dimension are left out, see leftOut().
-   * @param mergePoints whether coincident points on seams become one
+   * @brief Throws Error, with the remedy, for other data sets, for volume cells that are not linear
+   * tetrahedra or, without volume cells, for 2D cells that are not linear triangles, for ghost
+   * cells, and for data sets without any of these cells. Cells of lower dimension are left out, see
+   * leftOut().
+   * @param mergePoints whether to merge coincident points on seams
    */
   ReconnectableMesh(vtkDataSet* input, bool mergePoints, int threads);
 
@@ -51,60 +51,63 @@ public:
   bool isTriangles() const { return this->Corners == 3; }
   /// The number of points of a cell.
   int corners() const { return this->Corners; }
-  /// Of triangles: the pairs of points that lines of the input join.
+  /// For triangles: the pairs of points joined by lines of the input.
   const std::vector<std::array<Index, 2>>& lines() const { return this->Lines; }
-  /// Of tetrahedra: the points of triangles of the input.
+  /// For tetrahedra: the points of triangles of the input.
   const std::vector<std::array<Index, 3>>& facets() const { return this->Facets; }
-  /// The cell of the input that each of lines(), or of facets(), is, or is a part of.
+  /// The cell of the input to which each of lines(), or of facets(), belongs.
   const std::vector<Index>& markCells() const { return this->MarkCells; }
   /**
-   * @brief The class of each of facets(), from 1 on: facets with the same values in the arrays of
-   * tags have the same. At most half as many values as facets occur in these, see tagArrays().
+   * @brief The class of each of facets(), from 1: facets with the same values in the tag arrays
+   * share a class. These arrays have at most half as many values as there are facets, see
+   * tagArrays().
    */
   std::vector<std::int32_t> facetClasses() const;
-  /// Marks the points where lines() of different classes meet, which are found likewise.
+  /// Marks the points where lines() of different classes meet; the classes are found in the same
+  /// way.
   void fixLineBorders();
   const Mesh& mesh() const { return this->Adapter->mesh(); }
-  /// The cell of the input that a cell of mesh() is.
+  /// The cell of the input for a cell of mesh().
   Index inputCell(Index cell) const { return this->Cells.empty() ? cell : this->Cells[cell]; }
-  /// Whether a point of the input became one with another, which represents it.
+  /// Whether a point of the input was merged into another one, its representative.
   bool isMerged(Index point) const
   {
     return !this->Representative.empty() && this->Representative[point] != point;
   }
 
-  /// Marks points with a value other than 0; the array may be null.
+  /// Marks points with a nonzero value; the array may be null.
   void fixPoints(vtkDataArray* ofPoints);
-  /// Marks the points of cells with a value other than 0; the array may be null.
+  /// Marks the points of cells with a nonzero value; the array may be null.
   void fixCells(vtkDataArray* ofCells);
-  /// Of cells with the value 0, everything stays; the array may be null.
+  /// Keeps cells with the value 0 unchanged; the array may be null.
   void keepOthers(vtkDataArray* ofCells);
-  /// One flag per cell of mesh(), nonzero: it stays as it is. Empty: all may change.
+  /// One flag per cell of mesh(), nonzero if it must not change; empty if all may change.
   const std::vector<unsigned char>& outside() const { return this->Outside; }
 
   /// One flag per point.
   const std::vector<unsigned char>& fixed() const { return this->Fixed; }
 
-  /// The regions of the cells; null: one region. Throws Error for values that are no regions.
+  /// Sets the regions of the cells; null for one region. Throws Error for values that are not
+  /// region numbers.
   void setRegions(vtkDataArray* ofCells);
   /**
-   * @brief Regions by the values of the arrays of tags, in which at most a quarter as many values
-   * as cells occur, see tagArrays(). @return a sentence that names these arrays, or ""
+   * @brief Sets regions by the values of the tag arrays, which have at most a quarter as many
+   * values as there are cells, see tagArrays(). @return a sentence that names these arrays, or ""
    */
   std::string setRegionsByTags();
   /// One per cell of mesh(); empty for one region.
   const std::vector<Index>& regions() const { return this->Regions; }
 
   /**
-   * @brief Removes degenerate cells, see removeDegenerateCells() of the kernel: mesh(), lines(),
-   * facets() and regions() then describe the cells that remain. To be called when points have
-   * been fixed and regions set.
+   * @brief Removes degenerate cells, see removeDegenerateCells() in the kernel: mesh(), lines(),
+   * facets() and regions() then describe the remaining cells. Call it after fixing points and
+   * setting regions.
    */
   void removeDegenerate();
 
-  /// Remarks for the user on how the mesh is interpreted, as sentences, or "".
+  /// Remarks for the user on the interpretation of the mesh, as sentences, or "".
   const std::string& notice() const { return this->Notice; }
-  /// A sentence on cells that the output does not have, or "".
+  /// A sentence on cells missing in the output, or "".
   /// @param marks whether it has lines beside triangles, and triangles beside tetrahedra
   const std::string& leftOut(bool marks = false) const
   {
@@ -113,10 +116,10 @@ public:
 
 private:
   /**
-   * @brief The cell arrays that may be tags: of whole numbers with one component, no ids and no
-   * ghost flags, of which the values on some cells repeat.
+   * @brief The cell arrays that may be tags: integer arrays with one component, except ids and
+   * ghost flags, whose values on the given cells repeat.
    * @param cells of the input
-   * @param repeats the least number of cells per value
+   * @param repeats the smallest number of cells per value
    */
   std::vector<vtkDataArray*> tagArrays(const std::vector<Index>& cells, std::size_t repeats) const;
   void findKind();

@@ -16,7 +16,7 @@ namespace tautline
 {
 namespace
 {
-/// The tetrahedra of a piece and the facets that its triangles mark.
+/// The tetrahedra of a piece and the facets marked by its triangles.
 void takeCells(const MovableMesh& mesh, ReconnectablePiece& piece)
 {
   const MeshView& view = mesh.piece();

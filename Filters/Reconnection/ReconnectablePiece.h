@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ReconnectablePiece.h
- * @brief The input of Improve Mesh on several processes: the piece of each as the kernel takes it.
+ * @brief Converts the input of Improve Mesh on several processes for the kernel: the piece of each
+ * process.
  */
 #ifndef tautline_ReconnectablePiece_h
 #define tautline_ReconnectablePiece_h
@@ -22,23 +23,23 @@ class MovableMesh;
 /// The sum of the values of the ranks before this one. Collective.
 Index sumBefore(RankGroup& group, Index value);
 
-/// What the mesh is made of on all processes together. Collective.
+/// The kinds of cells in the whole mesh on all processes. Collective.
 CellKinds kindsOnRanks(RankGroup& group, vtkDataSet* input);
 
-/// What a process has of a mesh of tetrahedra.
+/// The part of a tetrahedral mesh on a process.
 struct ReconnectablePiece
 {
   vtkDataSet* input = nullptr;
   RankTetrahedra mesh;
   std::vector<Index> cells;   ///< of the input, per tetrahedron
-  std::vector<Index> numbers; ///< per point of the input; -1: no tetrahedron of any process has it
-  Index firstCell = 0;        ///< the cells that the processes before have
+  std::vector<Index> numbers; ///< per point of the input; -1 if in no tetrahedron
+  Index firstCell = 0;        ///< the number of cells on earlier processes
   bool mirrored = false;
 };
 
 /**
- * @brief Collective; throws Error on all processes for values that are no regions.
- * @param mesh of the input, with what is fixed
+ * @brief Collective; throws Error on all processes for values that are not region numbers.
+ * @param mesh of the input, with its fixed points
  * @param regions one value per cell, on all processes with cells or on none; or null
  */
 ReconnectablePiece takePiece(

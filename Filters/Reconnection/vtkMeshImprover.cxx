@@ -157,7 +157,7 @@ void vtkMeshImprover::CheckSeams(vtkDataObject* input)
 }
 
 //------------------------------------------------------------------------------
-/// Sets all options but the preset.
+/// Sets all options except the preset.
 void vtkMeshImprover::SetOptions(tautline::ReconnectionOptions& options) const
 {
   options.swap = this->Swap;
@@ -196,8 +196,8 @@ bool vtkMeshImprover::IsArrayChosen(int index)
 }
 
 //------------------------------------------------------------------------------
-/// The array of target lengths, or null. An adaptation without other lengths takes one that is
-/// chosen, or else the only array of metric tensors.
+/// The array of target lengths, or null. An adaptation without other lengths uses the chosen array,
+/// or otherwise the only array of metric tensors.
 vtkDataArray* vtkMeshImprover::FindSizeArray(vtkDataSet* input)
 {
   constexpr int componentsOfTensor = 6;
@@ -222,7 +222,7 @@ vtkDataArray* vtkMeshImprover::FindSizeArray(vtkDataSet* input)
 }
 
 //------------------------------------------------------------------------------
-/// Sets all options of tetrahedra or triangles but those of a mesh.
+/// Sets all options for tetrahedra or triangles except the options of a particular mesh.
 template <class Options>
 void vtkMeshImprover::PrepareOptions(Options& options, double block, double blocks)
 {
@@ -247,7 +247,7 @@ template void vtkMeshImprover::PrepareOptions(
   tautline::ReconnectionOptions& options, double block, double blocks);
 
 //------------------------------------------------------------------------------
-/// Runs the kernel on a mesh. @param targetAngle set to the one that was used
+/// Runs the kernel on a mesh. @param targetAngle set to the angle used
 tautline::ReconnectionResult vtkMeshImprover::Run(const tautline::ReconnectableMesh& mesh,
   const tautline::InputBlock& block, int blocks, double& targetAngle)
 {
@@ -275,9 +275,8 @@ tautline::ReconnectionResult vtkMeshImprover::Run(const tautline::ReconnectableM
   }
   if (this->Objective != ANGLES_AND_SHAPE)
   {
-    throw tautline::Error(
-      "the objective is for tetrahedra: leave it at its default for triangles, whose angles are "
-      "improved");
+    throw tautline::Error("the objective applies to tetrahedra: leave it at its default for "
+                          "triangles, whose angles are improved");
   }
   tautline::TriangleOptions options;
   options.keepVolume = this->KeepVolume;
@@ -298,8 +297,8 @@ std::vector<double> vtkMeshImprover::SetSize(
   if (!array && options.adapt && this->Size == ANY_LENGTH)
   {
     throw tautline::Error(
-      "the preset Adapt needs target lengths: set Edge Lengths to a length or to "
-      "an array of lengths or metric tensors, as Metric Tensor makes it");
+      "the preset Adapt needs target lengths: set Edge Lengths to a length or to an array of "
+      "lengths or metric tensors, for example from Metric Tensor");
   }
   if (!array && this->Size != SIZE_ARRAY)
   {
@@ -311,7 +310,7 @@ std::vector<double> vtkMeshImprover::SetSize(
     throw tautline::Error("target lengths are needed: choose a point array with one component "
                           "(lengths) or six or nine (metric tensors)");
   }
-  // Of nine components those of the upper triangle, in VTK's order of six.
+  // From nine components, the upper triangle in VTK's order of six.
   constexpr std::array<int, 6> upper = { 0, 4, 8, 1, 5, 2 };
   options.size = components == 1 ? ReconnectionSize::Lengths : ReconnectionSize::Metrics;
   for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i)

@@ -4,80 +4,80 @@
  * @brief Improves the worst tetrahedra or triangles of a mesh by changing its connectivity and
  * moving points.
  *
- * Takes unstructured grids of linear tetrahedra, unstructured grids and poly data of linear
- * triangles, or blocks of these. Edges and faces are swapped, edges contracted, points inserted and
- * moved around the worst elements, until every dihedral angle is between TargetAngle and 180
- * degrees minus it, or every angle of a triangle above it, or nothing helps. The smallest angle and
- * the worst inverse mean ratio of the output are never worse than those of the input. By default
- * the boundary stays: the same points and the same facets or edges.
+ * Supports unstructured grids of linear tetrahedra, unstructured grids and poly data of linear
+ * triangles, or blocks of these. Edges and faces are swapped, edges contracted, and points inserted
+ * and moved around the worst elements, until every dihedral angle is between TargetAngle and 180
+ * degrees minus TargetAngle, or every angle of a triangle is above it, or no operation helps. The
+ * smallest angle and the worst inverse mean ratio of the output are never worse than in the input.
+ * By default the boundary does not change: it keeps its points and its facets or edges.
  *
  * Triangles: planar meshes and surfaces in space. Edges on the border, between regions, under lines
  * beside the triangles and, on surfaces, sharp edges (FeatureAngle) stay; so do corners. Other
  * points of a surface stay on the smooth surface through the points of the input, and changed
- * triangles within SurfaceTolerance and SurfaceAngle of its facets. The area of a planar mesh and
- * of each region stays.
+ * triangles stay within SurfaceTolerance and SurfaceAngle of its facets. The area of a planar mesh
+ * and of each region does not change.
  *
- * Other cells of volume (of area, where there are none of volume), ghost cells and inverted
- * elements are an error (run vtkMeshUntangler first); cells of lower dimension are left out with a
- * warning (but see ADAPT), and keep what they mark: lines edges between triangles, triangles facets
- * between tetrahedra. A mesh reversed throughout is treated as its mirror image; in one of mixed
- * orientation, the cells in the opposite order are listed in the order of the others.
- * vtkMeshOptimizer improves the average element and keeps the connectivity.
+ * Other volume cells (or other 2D cells, in a mesh without volume cells), ghost cells and inverted
+ * elements are an error (run vtkMeshUntangler first). Cells of lower dimension are left out with a
+ * warning (but see ADAPT), and the entities that they mark are kept: lines mark edges between
+ * triangles, triangles mark facets between tetrahedra. A mesh reversed throughout is treated as its
+ * mirror image; in a mesh of mixed orientation, the cells in the opposite order are reordered like
+ * the others. In contrast, vtkMeshOptimizer improves the average element and keeps the
+ * connectivity.
  *
  * @par Input ports:
- * 0 the mesh; 1 (optional) a vtkSelection of points or cells that stay. The points also stay where
- * the point array at index 0 (SetInputArrayToProcess) is not 0. The cell array at index 1 has the
- * region of each cell: facets between regions are kept as the boundary is. Without it, regions of
- * ADAPT are those of the tags of the cells: arrays of whole numbers with at most a quarter as many
- * values as cells.
+ * 0 the mesh; 1 (optional) a vtkSelection of points or cells that stay. Points where the point
+ * array at index 0 (SetInputArrayToProcess) is not 0 also stay. The cell array at index 1 has the
+ * region of each cell: facets between regions are kept like the boundary. Without it, the regions
+ * of ADAPT are defined by the tags of the cells: integer arrays with at most a quarter as many
+ * values as there are cells.
  *
- * ADAPT also keeps the facets that triangles beside tetrahedra are, and the edges that lines beside
- * triangles are: they are divided as the mesh is, and the output has their parts, with their data.
- * Where two facets meet that differ in an array of tags (whole numbers, at most half as many values
- * as facets), or one ends, the edge stays.
+ * ADAPT also keeps the facets of triangles beside tetrahedra, and the edges of lines beside
+ * triangles: they are divided together with the mesh, and the output has their parts, with their
+ * data. An edge is kept if facets that differ in a tag array (integers, at most half as many values
+ * as facets) meet there, or if a facet ends there.
  *
  * @par Output port 0 `Mesh`:
- * The new mesh. Points of the input keep their data; new ones interpolate theirs in the cell of the
- * input that they are in. The cell array `OriginalCellId` is the cell of the input, of the same
- * region, that contains the centroid, and cells have its data (or averages, see CellTransfer). The
- * cell arrays `min_angle` (the smallest angle in degrees, of tetrahedra dihedral) and `imr` (the
- * inverse mean ratio) are those of the output. Global ids of points and cells are left out, as they
- * would not be unique.
+ * The new mesh. Points of the input keep their data; the data of new points are interpolated in the
+ * input cell that contains them. The cell array `OriginalCellId` is the cell of the input, of the
+ * same region, that contains the centroid, and cells have its data (or averages, see CellTransfer).
+ * The cell arrays `min_angle` (the smallest angle in degrees, dihedral for tetrahedra) and `imr`
+ * (the inverse mean ratio) refer to the output. Global ids of points and cells are left out,
+ * because they would not be unique.
  *
  * @par Output port 1 `History`:
  * A vtkTable whose row i is pass i (0 is the input): `Smallest angle`, `Largest angle`,
  * `Worst imr`, `N elements`, `N below target`; accepted operations since the start:
  * `N edge removals`, `N face removals`, `N boundary swaps`, `N contractions`, `N insertions`,
- * `N moves`; `Time (s)`; of composite data sets also `Block`. Flips of edges between triangles are
- * edge removals.
+ * `N moves`; `Time (s)`; for composite data sets also `Block`. Flips of edges between triangles
+ * count as edge removals.
  *
  * @par Output port 2 `Remaining`:
  * A vtkTable of the elements that are still below the target, the worst first: `Cell` (id in the
- * output), `Smallest angle`, `imr`, `X`, `Y`, `Z` (the centroid), `Quality` (see Objective; of
- * triangles the sine of the smallest angle), `Quality bound` (what the facets, or the angles
- * between edges, on the boundary and between regions allow), `Reason`; of composite data sets also
- * `Block`.
+ * output), `Smallest angle`, `imr`, `X`, `Y`, `Z` (the centroid), `Quality` (see Objective; for
+ * triangles the sine of the smallest angle), `Quality bound` (the best quality that the facets, or
+ * the angles between edges, on the boundary and between regions allow), `Reason`; for composite
+ * data sets also `Block`.
  *
  * @par Several processes:
- * A mesh of at least GatherBelow tetrahedra, of which not only the first process has some, is
- * improved in parts: planes divide it among the processes, each improves its part up to the seams,
- * and then planes in other directions divide it anew, so that no facet stays because it was on a
- * seam but for a few where the seams of all Rounds meet (Kernel/Reconnection/ReconnectionRounds.h).
- * The result depends on the number of processes, but not on how the mesh was cut, to the order of
- * points and cells. Ghost cells are left out as copies. A cell goes to the process that has its
- * original one; `OriginalCellId` counts through the cells of the pieces, one process after the
- * other, and so does `Cell` in Remaining through those of the output. Row i of History is round i.
- * The tables are on the first process. All points at the same place are one; with
- * MergeCoincidentPoints off, those of different processes with the same global id. Point arrays
- * are those that all pieces with points have.
+ * A mesh of at least GatherBelow tetrahedra that is not entirely on the first process is improved
+ * in parts: planes divide it among the processes, each process improves its part up to the seams,
+ * and then planes in other directions divide it again, so that only a few facets where the seams of
+ * all Rounds meet are kept because of a seam (Kernel/Reconnection/ReconnectionRounds.h). The result
+ * depends on the number of processes, but not on the initial division, except for the order of
+ * points and cells. Ghost cells are left out as copies. A cell goes to the process of its original
+ * cell; `OriginalCellId` numbers the cells of the pieces, one process after the other, and `Cell`
+ * in Remaining numbers the cells of the output in the same way. Row i of History is round i. The
+ * tables are on the first process. Coincident points are merged; with MergeCoincidentPoints off,
+ * only points of different processes with the same global id are merged. Only point arrays of all
+ * pieces with points are kept.
  *
- * The mesh is put together on the first process and improved there, and the summary states why,
- * where it has fewer tetrahedra; for triangles and composite data; for a boundary ON_SURFACE, the
- * objective METRIC, ThenBestShape, a CONSERVATIVE transfer, and target lengths SIZE_ARRAY and
- * LENGTH_OF_INPUT; where cells have no volume, are inverted or list their points in opposite
- * orders; with
- * MergeCoincidentPoints off for pieces without global ids of points; and for processes that do not
- * communicate by MPI.
+ * In the following cases, the mesh is gathered on the first process and improved there, and the
+ * summary states the reason: it has fewer tetrahedra; it consists of triangles or is composite
+ * data; for a boundary ON_SURFACE, the objective METRIC, ThenBestShape, a CONSERVATIVE transfer,
+ * and target lengths SIZE_ARRAY and LENGTH_OF_INPUT; cells have no volume, are inverted or list
+ * their points in opposite orders; MergeCoincidentPoints is off and pieces have no global point
+ * ids; the processes do not communicate by MPI.
  *
  * B. M. Klingner and J. R. Shewchuk, "Aggressive tetrahedral mesh improvement" (2007), see
  * tautline/Reconnection/Reconnection.h.
@@ -135,15 +135,15 @@ public:
   };
   ///@{
   /**
-   * The operations and the target: REMOVE_SLIVERS works only around tetrahedra with dihedral angles
-   * below 15 or above 165 degrees, by every operation; SWAP_ONLY moves no point; SWAP_AND_SMOOTH
-   * moves points, but inserts and removes none; AGGRESSIVE uses every operation everywhere; CUSTOM
-   * the operations of the switches below. ADAPT gives the edges the target lengths of SetSize(),
-   * which it needs: edges longer than sqrt(2) times the target are split, edges shorter than 1 /
-   * sqrt(2) times it contracted, points moved and edges swapped in turn; then the worst elements
-   * are improved in the metric. As many elements come or go as that takes: SmallestCount,
-   * LargestCount, TargetAngle, Objective, EdgeFactor and ThenBestShape have no effect. The default
-   * is REMOVE_SLIVERS.
+   * The operations and the target: REMOVE_SLIVERS applies every operation, but only around
+   * tetrahedra with dihedral angles below 15 or above 165 degrees; SWAP_ONLY moves no points;
+   * SWAP_AND_SMOOTH moves points, but inserts and removes none; AGGRESSIVE uses every operation
+   * everywhere; CUSTOM uses the operations of the switches below. ADAPT gives the edges the target
+   * lengths of SetSize(), which it needs: edges longer than sqrt(2) times the target are split,
+   * edges shorter than 1 / sqrt(2) times it are contracted, points are moved and edges swapped in
+   * turn; then the worst elements are improved in the metric. The number of elements changes as
+   * required: SmallestCount, LargestCount, TargetAngle, Objective, EdgeFactor and ThenBestShape
+   * have no effect. The default is REMOVE_SLIVERS.
    */
   vtkTautlineSetRangeMacro(Preset, int, CUSTOM, ADAPT);
   vtkGetMacro(Preset, int);
@@ -151,8 +151,8 @@ public:
 
   ///@{
   /**
-   * The operations of CUSTOM. Compound: operations that pay off only after the points around moved.
-   * All are on.
+   * The operations of CUSTOM. Compound: operations that pay off only after the surrounding points
+   * have moved. The defaults are on.
    */
   vtkSetMacro(Swap, bool);
   vtkGetMacro(Swap, bool);
@@ -173,9 +173,9 @@ public:
 
   ///@{
   /**
-   * Degrees, 0 to 60: tetrahedra are worked on while they have a dihedral angle below it or above
-   * 180 degrees minus it, or a mean ratio as bad. 0, the default, is that of the preset: 15 for
-   * REMOVE_SLIVERS, 33.4 for the others (40 for triangles).
+   * The target angle in degrees, 0 to 60: tetrahedra are improved while they have a dihedral angle
+   * below it or above 180 degrees minus it, or an equally bad mean ratio. 0, the default, stands
+   * for the angle of the preset: 15 for REMOVE_SLIVERS, 33.4 for the others (40 for triangles).
    */
   vtkTautlineSetRangeMacro(TargetAngle, double, 0.0, 60.0);
   vtkGetMacro(TargetAngle, double);
@@ -191,11 +191,11 @@ public:
   };
   ///@{
   /**
-   * What the worst tetrahedra are improved for: ANGLES_AND_SHAPE, the default, the smaller of the
-   * sines of the dihedral angles and (mean ratio)^(3/2); ANGLES the sines alone (larger smallest
-   * angles, longer tetrahedra); SHAPE (mean ratio)^(3/2) alone; METRIC the metric of SetMetric(),
-   * whose worst value never becomes worse; SUM all tetrahedra, for the sum of what their inverse
-   * mean ratios exceed 1. Triangles: refused.
+   * The quality of the worst tetrahedra to improve: ANGLES_AND_SHAPE, the default, is the smaller
+   * of the sines of the dihedral angles and (mean ratio)^(3/2); ANGLES is the sines alone (larger
+   * smallest angles, longer tetrahedra); SHAPE is (mean ratio)^(3/2) alone; METRIC is the metric of
+   * SetMetric(), whose worst value never becomes worse; SUM is the sum of (inverse mean ratio - 1)
+   * over all tetrahedra. Not supported for triangles.
    */
   vtkTautlineSetRangeMacro(Objective, int, ANGLES_AND_SHAPE, SUM);
   vtkGetMacro(Objective, int);
@@ -203,46 +203,47 @@ public:
 
   ///@{
   /**
-   * With METRIC: the number of a metric, one that has derivatives, is defined on tetrahedra, is
-   * better larger or smaller and does not depend on the orientation in space. Then a tetrahedron's
-   * quality is x / I of its value x and the ideal value I, or I / x where smaller is better, or 1 /
-   * (1 + x) where I is 0; of metrics without ideal value x / (x + u) or u / (x + u) with the mean u
-   * of the input. Tetrahedra are worked on while it is below the sine of TargetAngle. The default
-   * is 0, the inverse mean ratio. Other numbers and names are refused with an error.
+   * With METRIC: the number of a metric that has derivatives, is defined for tetrahedra, has a
+   * direction (larger or smaller is better) and does not depend on the orientation in space. The
+   * quality of a tetrahedron is then x / I for its value x and the ideal value I, or I / x if
+   * smaller is better, or 1 / (1 + x) if I is 0; for metrics without an ideal value, x / (x + u) or
+   * u / (x + u) with the mean u of the input. Tetrahedra are improved while their quality is below
+   * the sine of TargetAngle. The default is 0, the inverse mean ratio. Other numbers and names are
+   * an error.
    */
   void SetMetric(int metric);
   vtkGetMacro(Metric, int);
-  /// By name, label, symbol or alias.
+  /// Sets the metric by name, label, symbol or alias.
   void SetMetricByName(const char* name);
   ///@}
 
-  /// Numbers and labels of the metrics that were registered, for menus.
+  /// Numbers and labels of the registered metrics, for menus.
   std::string GetUserMetrics();
 
   enum Boundaries
   {
     FIXED = 0,
     SLIDING = 1,
-    ON_SURFACE = 3 ///< as vtkMeshBoundaryAlgorithm has it, whose FREE is an error here
+    ON_SURFACE = 3 ///< as in vtkMeshBoundaryAlgorithm, whose FREE is an error here
   };
   ///@{
   /**
    * FIXED, the default: the points and facets of the boundary and between regions stay. SLIDING:
    * points slide within flat parts of the boundary and along straight edges, and are contracted
-   * there; edges between coplanar facets are swapped. The shape and the volumes stay. ON_SURFACE
-   * (tetrahedra only): the same on curved parts; facets stay within SurfaceTolerance and
-   * SurfaceAngle of the input's, which stays within 1.25 times the distance of them; corners, sharp
-   * edges (FeatureAngle) and facets between regions stay, but for sharp edges of noise and corners
-   * nearer to each other than the distance. The shape and the volume change within these bounds;
-   * the summary has both. Parts of the boundary that are closer to each other than the distance may
-   * come to overlap.
+   * there; edges between coplanar facets are swapped. The shape and the volumes do not change.
+   * ON_SURFACE (tetrahedra only): the same on curved parts; facets stay within SurfaceTolerance and
+   * SurfaceAngle of the input's boundary, which stays within 1.25 times this distance of them;
+   * corners, sharp edges (FeatureAngle) and facets between regions stay, except sharp edges due to
+   * noise and corners closer to each other than the tolerance. The shape and the volume change
+   * within these bounds; the summary reports both. Parts of the boundary that are closer to each
+   * other than the tolerance may overlap afterwards.
    */
   vtkTautlineSetRangeMacro(Boundary, int, FIXED, ON_SURFACE);
   vtkGetMacro(Boundary, int);
   ///@}
 
   ///@{
-  /// With SLIDING: facets whose normals differ by at most so many degrees, 0 to 1, are coplanar.
+  /// With SLIDING: facets whose normals differ by at most this angle, 0 to 1 degrees, are coplanar.
   /// The default is 0.01.
   vtkTautlineSetRangeMacro(FlatAngle, double, 0.0, 1.0);
   vtkGetMacro(FlatAngle, double);
@@ -250,10 +251,10 @@ public:
 
   ///@{
   /**
-   * Of surfaces in space, and of a boundary ON_SURFACE. FeatureAngle, 0 to 180 degrees: edges
-   * between facets that differ by more are kept. SurfaceAngle, 0 to 90 degrees, and
-   * SurfaceTolerance, 0 to 1 times the diagonal of the mesh: how far changed facets turn and move
-   * away from the input. The defaults are 40, 20 and 0.005.
+   * For surfaces in space, and for a boundary ON_SURFACE. FeatureAngle, 0 to 180 degrees: edges
+   * between facets whose normals differ by more are kept. SurfaceAngle, 0 to 90 degrees, and
+   * SurfaceTolerance, 0 to 1 times the diagonal of the mesh: the largest rotation and distance of
+   * changed facets from the input. The defaults are 40, 20 and 0.005.
    */
   vtkTautlineSetRangeMacro(FeatureAngle, double, 0.0, 180.0);
   vtkGetMacro(FeatureAngle, double);
@@ -265,9 +266,9 @@ public:
 
   ///@{
   /**
-   * Whether a closed surface in space keeps the volume that it encloses: in the end, points of its
-   * curved parts move along their normals, all by the same way. An error for open surfaces and
-   * planar meshes; tetrahedra are not affected. The summary has the volumes. The default is off.
+   * Whether a closed surface in space keeps its enclosed volume: at the end, points of its curved
+   * parts move along their normals, all by the same distance. An error for open surfaces and planar
+   * meshes; tetrahedra are not affected. The summary reports the volumes. The default is off.
    */
   vtkSetMacro(KeepVolume, bool);
   vtkGetMacro(KeepVolume, bool);
@@ -276,8 +277,8 @@ public:
 
   ///@{
   /**
-   * The number of elements stays within these multiples of the input's: 0 to 1 and at least 1.
-   * Both 1: no point is inserted or removed. The defaults are 0.9 and 1.1.
+   * The bounds on the number of elements, as multiples of the input's: 0 to 1 and at least 1. If
+   * both are 1, no point is inserted or removed. The defaults are 0.9 and 1.1.
    */
   vtkTautlineSetRangeMacro(SmallestCount, double, 0.0, 1.0);
   vtkGetMacro(SmallestCount, double);
@@ -294,12 +295,13 @@ public:
   };
   ///@{
   /**
-   * The target length of edges: contraction makes none longer than EdgeFactor times it, insertion
-   * none shorter than it divided by EdgeFactor. ANY_LENGTH, the default: no target. EDGE_LENGTH:
-   * EdgeLength. SIZE_ARRAY: the point array at index 2 (SetInputArrayToProcess), lengths (one
-   * component) or metric tensors in which edges of the target length have length 1 (six components
-   * in the order of VTK, or nine); with ANY_LENGTH, ADAPT takes that array, too, or the only one of
-   * six components if none is chosen. LENGTH_OF_INPUT: the mean length of the edges at each point.
+   * The target length of edges: contraction creates no edge longer than EdgeFactor times the
+   * target, insertion no edge shorter than the target divided by EdgeFactor. ANY_LENGTH, the
+   * default: no target. EDGE_LENGTH: EdgeLength. SIZE_ARRAY: the point array at index 2
+   * (SetInputArrayToProcess), lengths (one component) or metric tensors in which edges of the
+   * target length have length 1 (six components in the order of VTK, or nine); with ANY_LENGTH,
+   * ADAPT also uses this array, or the only one with six components if none is chosen.
+   * LENGTH_OF_INPUT: the mean length of the edges at each point.
    */
   vtkTautlineSetRangeMacro(Size, int, ANY_LENGTH, LENGTH_OF_INPUT);
   vtkGetMacro(Size, int);
@@ -312,9 +314,9 @@ public:
   };
   ///@{
   /**
-   * What the selection of input port 1 is: STAYS, the default, points and cells whose points stay;
-   * CHANGES, the cells that may change, all others being kept as they are. The cell array at index
-   * 3 (SetInputArrayToProcess) does the same by its values: cells with 0 are kept.
+   * The meaning of the selection at input port 1. STAYS, the default: the selected points and the
+   * points of selected cells stay. CHANGES: only the selected cells may change. The cell array at
+   * index 3 (SetInputArrayToProcess) has the same effect: cells with the value 0 are kept.
    */
   vtkTautlineSetRangeMacro(Selected, int, STAYS, CHANGES);
   vtkGetMacro(Selected, int);
@@ -327,16 +329,17 @@ public:
   ///@}
 
   ///@{
-  /// How much longer or shorter than the target new edges may be, above 1. The default is 2.
+  /// The factor by which new edges may be longer or shorter than the target, above 1. The default
+  /// is 2.
   vtkTautlineSetRangeMacro(EdgeFactor, double, 1.0, VTK_DOUBLE_MAX);
   vtkGetMacro(EdgeFactor, double);
   ///@}
 
   ///@{
   /**
-   * Whether points move at the end for the best shape on average: the mean of the inverse mean
-   * ratios, while the smallest dihedral angle and the worst inverse mean ratio stay as good as they
-   * are. The default is off.
+   * Whether to move points at the end for the best average shape: the mean of the inverse mean
+   * ratios is reduced, while the smallest dihedral angle and the worst inverse mean ratio do not
+   * get worse. The default is off.
    */
   vtkSetMacro(ThenBestShape, bool);
   vtkGetMacro(ThenBestShape, bool);
@@ -350,12 +353,12 @@ public:
   };
   ///@{
   /**
-   * Where cells have their data from. COPY, the default: from the cell of the input that contains
-   * the centroid. CONSERVATIVE: arrays of real numbers are averages over the cells of the input,
-   * weighted by the volumes (areas) that the cell shares with them; so constants stay, and so does
-   * the integral of each array over the mesh, to the change of the volume (area) where the boundary
-   * or surface changes. Other arrays are copied from the cell that shares most. Costs some 20
-   * microseconds per cell that changed.
+   * The transfer of cell data. COPY, the default: from the cell of the input that contains the
+   * centroid. CONSERVATIVE: floating-point arrays are averaged over the cells of the input,
+   * weighted by the volumes (areas) that the cell shares with them; this preserves constants and
+   * the integral of each array over the mesh, up to changes of the volume (area) if the boundary or
+   * surface changes. Other arrays are copied from the cell with the largest overlap. The cost is
+   * about 20 microseconds per changed cell.
    */
   vtkTautlineSetRangeMacro(CellTransfer, int, COPY, CONSERVATIVE);
   vtkGetMacro(CellTransfer, int);
@@ -363,8 +366,8 @@ public:
 
   ///@{
   /**
-   * Whether points with the same coordinates on facets that match become one, as on the seams of a
-   * mesh in pieces; off: seams are treated as boundary. The default is on.
+   * Whether to merge points with the same coordinates on matching facets, for example on the seams
+   * of a mesh in pieces; if off, seams are treated as boundary. The default is on.
    */
   vtkSetMacro(MergeCoincidentPoints, bool);
   vtkGetMacro(MergeCoincidentPoints, bool);
@@ -373,9 +376,9 @@ public:
 
   ///@{
   /**
-   * On several processes. GatherBelow, at least 0: a mesh of fewer tetrahedra is put together on
-   * the first process, and the result is that of one process. Rounds, 1 to 100: how often at most
-   * the mesh is divided anew. The defaults are 20,000 and 12.
+   * For several processes. GatherBelow, at least 0: a mesh with fewer tetrahedra is gathered on the
+   * first process, which reproduces the serial result. Rounds, 1 to 100: the maximum number of
+   * times that the mesh is divided again. The defaults are 20,000 and 12.
    */
   vtkTautlineSetRangeMacro(GatherBelow, vtkIdType, 0, VTK_ID_MAX);
   vtkGetMacro(GatherBelow, vtkIdType);
@@ -391,9 +394,9 @@ public:
 
   ///@{
   /**
-   * The result of the last execution, of all blocks together: why the (last) run ended, the numbers
-   * of elements, the smallest angles in degrees, the largest inverse mean ratios, and the number of
-   * elements that remain below the target.
+   * The results of the last execution, over all blocks: the reason why the (last) run ended, the
+   * numbers of elements, the smallest angles in degrees, the largest inverse mean ratios, and the
+   * number of elements that remain below the target.
    */
   const char* GetReason() const { return this->Reason.c_str(); }
   vtkIdType GetElementsBefore() const { return this->ElementsBefore; }
@@ -406,21 +409,22 @@ public:
   ///@}
 
   ///@{
-  /// With METRIC: the metric's worst values; else 0.
+  /// With METRIC: the metric's worst values; otherwise 0.
   double GetWorstMetricBefore() const { return this->WorstMetricBefore; }
   double GetWorstMetricAfter() const { return this->WorstMetricAfter; }
   ///@}
 
   /**
-   * The largest distance of the boundary from that of the input, or back, measured at corners,
-   * middles of edges and centres of facets. 0 unless the boundary is ON_SURFACE.
+   * The largest distance between the boundaries of the output and the input, in both directions,
+   * measured at corners, midpoints of edges and centers of facets. 0 unless the boundary is
+   * ON_SURFACE.
    */
   double GetBoundaryDistance() const { return this->BoundaryDistance; }
 
   ///@{
   /**
-   * With ADAPT: the part of the edges, 0 to 1, whose lengths are from 1 / sqrt(2) to sqrt(2) times
-   * the target; and the largest inverse mean ratio in the metric, at least 1. Else 0.
+   * With ADAPT: the fraction of the edges, 0 to 1, whose lengths are from 1 / sqrt(2) to sqrt(2)
+   * times the target; and the largest inverse mean ratio in the metric, at least 1. Otherwise 0.
    */
   double GetEdgesInRangeBefore() const { return this->EdgesInRangeBefore; }
   double GetEdgesInRangeAfter() const { return this->EdgesInRangeAfter; }
@@ -472,11 +476,12 @@ private:
   void ImproveOnRanks(vtkInformationVector** inputVector, vtkDataObject* output,
     tautline::TableRows& history, tautline::TableRows& remaining);
 
-  /// Of an execution in which each process takes its piece: the mesh, or why it is an error.
+  /// For an execution in which each process works on its piece: the mesh, or the reason for an
+  /// error.
   std::unique_ptr<tautline::RankGroup> Group;
   std::unique_ptr<tautline::MovableMesh> Pieces;
   std::string PieceError, LeftOut;
-  std::string WhyGathered; ///< of one in which several processes do not; else ""
+  std::string WhyGathered; ///< if several processes do not work on pieces; otherwise ""
 
   int Preset = REMOVE_SLIVERS;
   bool Swap = true;

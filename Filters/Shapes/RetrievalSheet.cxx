@@ -17,11 +17,11 @@ namespace
 {
 using Color = std::array<unsigned char, 3>;
 constexpr unsigned char Paper = 255;
-// Of the width of a picture.
+// Fractions of the width of a picture.
 constexpr double FrameWidth = 1.0 / 12;
 constexpr double GapWidth = 1.0 / 6;
 
-/// A picture that is drawn from the top left.
+/// A picture with its origin at the top left.
 class Canvas
 {
 public:
@@ -34,7 +34,7 @@ public:
     std::fill_n(this->Pixels->GetPointer(0), this->Pixels->GetNumberOfValues(), Paper);
   }
 
-  /// A small picture in a frame, whose top left corner is given.
+  /// Draws a small picture in a frame with a given top left corner.
   void add(const Thumbnail& picture, const Color& frame, const RetrievalSheet::Layout& layout,
     const std::array<int, 2>& place)
   {
@@ -61,7 +61,7 @@ public:
   }
 
 private:
-  /// The mean of what a pixel of the smaller picture covers.
+  /// The mean of the pixels covered by a pixel of the smaller picture.
   static unsigned char scaled(const Thumbnail& picture, int size, int u, int v)
   {
     constexpr int stored = RetrievalSheet::Stored;
@@ -125,7 +125,7 @@ Thumbnail RetrievalSheet::thumbnail(const ImageView& image)
   const double left = (static_cast<double>(image.width) - scale * Stored) / 2;
   const double bottom = (static_cast<double>(image.height) - scale * Stored) / 2;
   Thumbnail result(static_cast<std::size_t>(Stored) * Stored);
-  // Around the image its border goes on.
+  // Outside the image its border pixels are repeated.
   const auto at = [scale](double begin, int pixel, Index length)
   {
     return std::clamp<Index>(

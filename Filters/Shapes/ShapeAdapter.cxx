@@ -26,7 +26,7 @@ namespace tautline
 {
 namespace
 {
-/// Pixels are square if their sides differ by no more than this part.
+/// Pixels are square if their sides differ by at most this fraction.
 constexpr double SquareTolerance = 1e-4;
 /// A mesh is planar if its thickness is at most this fraction of its extent.
 constexpr double PlaneTolerance = 1e-6;
@@ -73,7 +73,7 @@ GreyImage::GreyImage(vtkImageData* image, vtkDataArray* array)
   array = array ? array : firstOf(image->GetPointData());
   if (!array)
   {
-    // Values of cells are pixels, too: the readers of geographic images give them so.
+    // Cell values are also accepted as pixels, because readers of geographic images produce them.
     array = firstOf(image->GetCellData());
     this->Shift = 0.5;
     --this->Width;
@@ -86,7 +86,7 @@ GreyImage::GreyImage(vtkImageData* image, vtkDataArray* array)
   const vtkIdType count = array->GetNumberOfTuples();
   if (count < 1 || count != this->Width * this->Height)
   {
-    throw Error("The array of the image has not one value per pixel.");
+    throw Error("The array of the image does not have one value per pixel.");
   }
   const int components = array->GetNumberOfComponents();
   bool useAlpha = false;
@@ -102,7 +102,7 @@ GreyImage::GreyImage(vtkImageData* image, vtkDataArray* array)
     double value = array->GetComponent(i, useAlpha ? components - 1 : 0);
     if (components >= 3 && !useAlpha)
     {
-      // Luminance of ITU-R BT.601, as vtkImageLuminance has it.
+      // Luminance of ITU-R BT.601, as in vtkImageLuminance.
       value = 0.30 * value + 0.59 * array->GetComponent(i, 1) + 0.11 * array->GetComponent(i, 2);
     }
     this->Values[i] = static_cast<float>(value);
@@ -129,15 +129,15 @@ SourceMesh takeSourceMesh(vtkDataSet* mesh)
   {
     throw Error("The source mesh does not lie in a plane z = constant.");
   }
-  // Each edge of one triangle only leads from a vertex of the boundary to the next.
+  // Each edge of exactly one triangle leads from a boundary vertex to the next.
   std::map<std::pair<vtkIdType, vtkIdType>, int> edges;
   for (vtkIdType cell = 0; cell < mesh->GetNumberOfCells(); ++cell)
   {
     if (mesh->GetCellType(cell) != VTK_TRIANGLE)
     {
       throw Error("Cell " + std::to_string(cell) +
-        " of the source mesh is not a triangle: run Tetrahedralize first, which cuts all cells of "
-        "a plane mesh into triangles.");
+        " of the source mesh is not a triangle: run Tetrahedralize first to cut all cells of a "
+        "planar mesh into triangles.");
     }
     vtkIdList* ids = mesh->GetCell(cell)->GetPointIds();
     double x[3][3];
@@ -239,7 +239,7 @@ void addOrders(vtkUnstructuredGrid* grid, const PolygonMesh& mesh)
     steps->SetValue(step.triangle, number);
     elimination->SetValue(step.vertex, number++);
   }
-  // The two vertices that are left are the last.
+  // The two remaining vertices are the last.
   const EliminationStep& last = mesh.elimination.back();
   elimination->SetValue(last.parents[0], number);
   elimination->SetValue(last.parents[1], number + 1);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ShapeAdapter.h
- * @brief Between VTK's images and meshes and the kernel's silhouettes and polygons. Not installed.
+ * @brief Converts between VTK's images and meshes and the kernel's silhouettes and polygons. Not
+ * installed.
  */
 #ifndef tautline_ShapeAdapter_h
 #define tautline_ShapeAdapter_h
@@ -20,18 +21,18 @@ class vtkUnstructuredGrid;
 
 namespace tautline
 {
-/// One slice of grey values. Pixel coordinates become places in space with toSpace().
+/// One slice of gray values. toSpace() converts pixel coordinates to positions in space.
 class GreyImage
 {
 public:
   /**
-   * @brief Takes the grey values of a planar image.
+   * @brief Takes the gray values of a planar image.
    *
-   * Colours become their luminance. Of an image with an alpha channel that is not constant, the
-   * alpha is taken: what is transparent is not the shape. Throws Error on volumes, on pixels that
-   * are not square, without an array.
-   * @param array the values; null: the active point scalars, the first point array, or the same of
-   * the cells
+   * Colors are converted to luminance. If an image has an alpha channel that is not constant, alpha
+   * is used: transparent pixels do not belong to the shape. Throws Error for volumes, pixels that
+   * are not square, and a missing array.
+   * @param array the values; null for the active point scalars, the first point array, or the same
+   * for cells
    */
   explicit GreyImage(vtkImageData* image, vtkDataArray* array = nullptr);
 
@@ -47,10 +48,10 @@ private:
   int AxisU = 0;
   int AxisV = 1;
   double Size = 1;
-  double Shift = 0; ///< of a pixel's centre from the grid point of its number, in pixels
+  double Shift = 0; ///< from the grid point of a pixel to its center, in pixels
 };
 
-/// The polygon of a source mesh, and the point of the input each vertex was.
+/// The polygon of a source mesh, and the input point of each vertex.
 struct SourceMesh
 {
   ShapeSource source;
@@ -60,11 +61,11 @@ struct SourceMesh
 /// The boundary polygon of a planar mesh of triangles without interior points.
 SourceMesh takeSourceMesh(vtkDataSet* mesh);
 
-/// Triangles of a polygon at places in space.
+/// Fills a grid with the triangles of a polygon at positions in space.
 void fillGrid(vtkUnstructuredGrid* grid, const PolygonMesh& mesh, const std::vector<Vec2>& points,
   const GreyImage& image);
 
-/// Point and cell arrays with the order of vertices along the boundary and of elimination.
+/// Adds point and cell arrays with the order of vertices along the boundary and of elimination.
 void addOrders(vtkUnstructuredGrid* grid, const PolygonMesh& mesh);
 }
 #endif

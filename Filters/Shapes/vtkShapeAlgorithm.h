@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkShapeAlgorithm
- * @brief Base class of Match Shape and Shape Retrieval: the energy, the locations and the search.
+ * @brief Base class of Match Shape and Shape Retrieval; defines the energy, the locations and the
+ * search.
  *
  * Abstract. The energy of a placement of the source's triangles is (dissertation equation 5.1)
  *
  *     E = sum over triangles of  E_edge + a E_def + b E_dis
  *
- * and its terms are in tautline/Shapes/ShapeMatch.h. The properties below are those of dissertation
- * chapter 5, and some that are not in it: they are off unless stated otherwise. After the time
- * limit the best placement so far is returned; before the search has begun there is none, and the
+ * with the terms described in tautline/Shapes/ShapeMatch.h. The properties below are from
+ * dissertation chapter 5; additional ones are off unless stated otherwise. After the time limit the
+ * best placement so far is returned; if the search has not started, there is none, and the
  * execution ends with an error.
  *
  * @sa vtkShapeMatcher, vtkShapeRetrieval, tautline::matchShape (tautline/Shapes/ShapeMatch.h)
@@ -36,8 +37,8 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   /**
-   * Where vertices may go: a grid over the image, the grid locations near the outline, or points on
-   * the outline.
+   * The possible locations of vertices: a grid over the image, the grid locations near the outline,
+   * or points on the outline.
    */
   enum LocationKinds
   {
@@ -47,7 +48,7 @@ public:
   };
 
   /**
-   * What a placement may do with a triangle, or with the whole shape.
+   * The permitted reflections of triangles or of the whole shape.
    */
   enum Reflections
   {
@@ -67,8 +68,8 @@ public:
 
   ///@{
   /**
-   * a, weight of the squared log-anisotropy of the triangles, at least 0. The default is 12 (a = 4
-   * b).
+   * The weight a of the squared log-anisotropy of the triangles, at least 0. The default is 12 (a =
+   * 4 b).
    */
   vtkSetMacro(DeformationWeight, double);
   vtkGetMacro(DeformationWeight, double);
@@ -76,8 +77,8 @@ public:
 
   ///@{
   /**
-   * b, weight of the edge length distortion, at least 0. The default is 3; 0 is Felzenszwalb's
-   * energy.
+   * The weight b of the edge length distortion, at least 0. The default is 3; 0 gives
+   * Felzenszwalb's energy.
    */
   vtkSetMacro(DistortionWeight, double);
   vtkGetMacro(DistortionWeight, double);
@@ -85,8 +86,8 @@ public:
 
   ///@{
   /**
-   * Whether the distortion distinguishes growing from shrinking; the dissertation's does not. Off
-   * by default.
+   * Whether the distortion distinguishes growth from shrinkage, unlike in the dissertation. The
+   * default is off.
    */
   vtkSetMacro(SignedDistortion, bool);
   vtkGetMacro(SignedDistortion, bool);
@@ -95,8 +96,8 @@ public:
 
   ///@{
   /**
-   * Standard deviation of the Gaussian before the gradient is taken, pixels, above 0. The default
-   * is 1.5.
+   * Standard deviation in pixels of the Gaussian filter applied before the gradient, above 0. The
+   * default is 1.5.
    */
   vtkSetMacro(Smoothing, double);
   vtkGetMacro(Smoothing, double);
@@ -104,7 +105,7 @@ public:
 
   ///@{
   /**
-   * Whether an edge of the polygon must have the shape on its inner side. Off by default.
+   * Whether an edge of the polygon must have the shape on its inner side. The default is off.
    */
   vtkSetMacro(DirectedEdges, bool);
   vtkGetMacro(DirectedEdges, bool);
@@ -113,8 +114,8 @@ public:
 
   ///@{
   /**
-   * Weight of 1 - cos(angle a triangle turns by), at least 0. The default, 0, lets shapes turn
-   * freely.
+   * Weight of 1 - cos(rotation angle of a triangle), at least 0. The default, 0, allows shapes to
+   * rotate freely.
    */
   vtkSetMacro(RotationWeight, double);
   vtkGetMacro(RotationWeight, double);
@@ -130,8 +131,8 @@ public:
 
   ///@{
   /**
-   * Weight of unequal lengths along the outline, at least 0; contour locations only. The default is
-   * 0.
+   * Weight of unequal lengths along the outline, at least 0; only for contour locations. The
+   * default is 0.
    */
   vtkSetMacro(OrderingWeight, double);
   vtkGetMacro(OrderingWeight, double);
@@ -139,8 +140,8 @@ public:
 
   ///@{
   /**
-   * FORBIDDEN (0, the default): triangles that turn over count as flat. WHOLE (1): the shape or its
-   * mirror image, whichever fits better. FREE (2): triangles may turn over at no cost.
+   * FORBIDDEN (0, the default): reflected triangles count as flat. WHOLE (1): the shape or its
+   * mirror image, whichever fits better. FREE (2): triangles may be reflected at no cost.
    */
   vtkTautlineSetRangeMacro(Reflection, int, FORBIDDEN, FREE);
   vtkGetMacro(Reflection, int);
@@ -172,9 +173,9 @@ public:
 
   ///@{
   /**
-   * theta / d_max: how far the mean of the matched vertices may be from the target's centre of mass
-   * before the next best solution is taken (equation 5.2), at least 0; 0 switches the rule off. The
-   * default is 1/3.
+   * theta / d_max: the largest distance of the mean of the matched vertices from the target's
+   * center of mass before the next best solution is tried (equation 5.2), at least 0; 0 switches
+   * the rule off. The default is 1/3.
    */
   vtkSetMacro(CentreTolerance, double);
   vtkGetMacro(CentreTolerance, double);
@@ -182,7 +183,7 @@ public:
 
   ///@{
   /**
-   * Solutions to try for the rule, at least 1. The default is 1000.
+   * Maximum number of solutions to try for this rule, at least 1. The default is 1000.
    */
   vtkSetMacro(MaximumSolutions, int);
   vtkGetMacro(MaximumSolutions, int);
@@ -190,7 +191,8 @@ public:
 
   ///@{
   /**
-   * Solve on a third of the locations, then around that solution: fast, not exact. Off by default.
+   * Whether to solve on a third of the locations first, then around that solution: fast but not
+   * exact. The default is off.
    */
   vtkSetMacro(CoarseToFine, bool);
   vtkGetMacro(CoarseToFine, bool);
@@ -199,7 +201,8 @@ public:
 
   ///@{
   /**
-   * Orientations of the source to try, 1 to 360; useful with a RotationWeight. The default is 1.
+   * Number of orientations of the source to try, 1 to 360; useful with a RotationWeight. The
+   * default is 1.
    */
   vtkSetMacro(Rotations, int);
   vtkGetMacro(Rotations, int);
@@ -207,8 +210,8 @@ public:
 
   ///@{
   /**
-   * Sizes of the target to try, an odd number from 1 to 31, each sqrt(2) times the next. The
-   * default is 1.
+   * Number of target sizes to try, odd, from 1 to 31, with a factor of sqrt(2) between consecutive
+   * sizes. The default is 1.
    */
   vtkSetMacro(Scales, int);
   vtkGetMacro(Scales, int);
@@ -216,7 +219,7 @@ public:
 
   ///@{
   /**
-   * Which side of the automatic threshold is the shape: 0 automatic (the default), 1 bright, 2
+   * The side of the automatic threshold that is the shape: 0 automatic (the default), 1 bright, 2
    * dark.
    */
   vtkTautlineSetRangeMacro(Foreground, int, 0, 2);
@@ -227,13 +230,13 @@ protected:
   vtkShapeAlgorithm();
   ~vtkShapeAlgorithm() override = default;
 
-  /// Not before the images are prepared.
+  /// False until the images are prepared.
   bool KeepsBest() const override { return this->Matching; }
   void ClearResult() override;
 
   void GetOptions(tautline::LocationOptions& locations, tautline::MatchOptions& match);
 
-  bool Matching = false; ///< in this execution, as the search for places has begun
+  bool Matching = false; ///< whether the search has started in this execution
   double Lambda = 0.1;
   double DeformationWeight = 12.0;
   double DistortionWeight = 3.0;

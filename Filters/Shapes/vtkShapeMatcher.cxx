@@ -26,7 +26,7 @@ vtkStandardNewMacro(vtkShapeMatcher);
 
 namespace
 {
-/// The source, and where its vertices are in space.
+/// The source and the positions of its vertices in space.
 struct Source
 {
   tautline::ShapeSource shape;
@@ -95,7 +95,7 @@ void addTriangleTerms(
   grid->GetCellData()->SetActiveScalars("Energy");
 }
 
-/// The arrays of a source mesh, the orders of the vertices, and Displacement.
+/// Adds the arrays of a source mesh, the orders of the vertices, and Displacement.
 void addPointData(vtkUnstructuredGrid* grid, const Source& source, vtkDataSet* input)
 {
   const vtkIdType n = grid->GetNumberOfPoints();
@@ -121,7 +121,7 @@ void addPointData(vtkUnstructuredGrid* grid, const Source& source, vtkDataSet* i
   grid->GetPointData()->AddArray(displacement);
 }
 
-/// One row. @param tolerance distance from the centre of mass that is accepted, pixels
+/// Fills one row. @param tolerance the accepted distance from the center of mass, in pixels
 void fillStatistics(const tautline::ShapeMatch& match, double tolerance, vtkTable* table)
 {
   tautline::TableRows rows;
@@ -150,15 +150,15 @@ std::string summaryOf(const tautline::ShapeMatch& match, double tolerance)
   std::ostringstream text;
   text << "Energy " << match.energy << ": edges " << match.edge << ", deformation "
        << match.deformation << ", distortion " << match.distortion << " (unweighted); solution "
-       << match.rank << ", centre off by " << match.centreDistance << " of " << tolerance
+       << match.rank << ", center off by " << match.centreDistance << " of " << tolerance
        << " pixels.";
   if (match.stop != tautline::MatchStop::Complete)
   {
-    text << " Ended early: the best so far.";
+    text << " Stopped early: this is the best result so far.";
   }
   else if (!match.centreAccepted)
   {
-    text << " No solution tried is close enough to the centre of mass.";
+    text << " None of the solutions tried is close enough to the center of mass.";
   }
   return text.str();
 }
@@ -195,7 +195,7 @@ int vtkShapeMatcher::FillOutputPortInformation(int port, vtkInformation* info)
 int vtkShapeMatcher::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
 {
-  // Each image as a whole: they differ in size.
+  // Each image is used as a whole, because the sizes differ.
   for (int port = 0; port < 2; ++port)
   {
     vtkInformation* info = inputVector[port]->GetInformationObject(0);

@@ -3,32 +3,32 @@
  * @class vtkShapeMatcher
  * @brief "Match Shape": finds a deformable shape in an image.
  *
- * The source is a triangulated polygon; the placement of its vertices in the target image with the
- * minimum energy is found by dynamic programming over the triangles, exactly and without a first
- * guess (dissertation chapter 5). If the mean of the matched vertices is too far from the target's
- * centre of mass, the next best solution is taken (equation 5.2).
+ * The source is a triangulated polygon; dynamic programming over the triangles finds the placement
+ * of its vertices in the target image with minimum energy, exactly and without an initial guess
+ * (dissertation chapter 5). If the mean of the matched vertices is too far from the target's center
+ * of mass, the next best solution is tried (equation 5.2).
  *
  * @par Inputs:
  * Port 0, Input: the source, an image (Silhouette to Mesh is applied with Spacing) or a planar mesh
- * of triangles without points inside, such as the output of Silhouette to Mesh; its field arrays
+ * of triangles without interior points, such as the output of Silhouette to Mesh; its field arrays
  * `CentreOfMass` and `MaximumDistance` are used. Port 1, Target: a planar image with square pixels.
  *
  * @par Output 0, Detected Mesh:
- * vtkUnstructuredGrid, the source's triangles in the target. Point arrays: those of a source mesh,
- * `Displacement` (3, place in the target minus place in the source), `BoundaryOrder`,
+ * vtkUnstructuredGrid, the source's triangles in the target. Point arrays: the arrays of a source
+ * mesh, `Displacement` (3, position in the target minus position in the source), `BoundaryOrder`,
  * `EliminationOrder`. Cell arrays, unweighted: `EdgeCost`, `Deformation`, `Distortion`, and
- * `Energy`, their weighted sum; `EliminationStep`. The triangles of a source mesh are made anew
- * from its boundary, which changes nothing if Silhouette to Mesh made them.
+ * `Energy`, their weighted sum; `EliminationStep`. The triangles of a source mesh are regenerated
+ * from its boundary, with the same result if they are from Silhouette to Mesh.
  *
  * @par Output 1, Statistics:
- * vtkTable of one row: Energy, EdgeCost, Deformation, Distortion, Rotation, Descriptor, Ordering,
+ * vtkTable with one row: Energy, EdgeCost, Deformation, Distortion, Rotation, Descriptor, Ordering,
  * Rank (of the solution taken), CentreDistance (D), CentreTolerance (theta), CentreAccepted,
  * Mirrored, Angle, Scale, Exact, Stop (0 complete, 1 time limit, 2 stopped). Lengths are pixels of
  * the target.
  *
  * @par Limitations:
- * The target's centre of mass and size are those of its largest component. Ends with the best so
- * far at the time limit; before the search has begun, with an error.
+ * The target's center of mass and size are computed from its largest component. At the time limit
+ * the filter returns the best result so far, or an error if the search has not started.
  *
  * @par Example:
  * @code
@@ -66,8 +66,8 @@ public:
 
   ///@{
   /**
-   * Distance of vertices along the outline of a source that is an image, pixels, above 0. The
-   * default is 25.
+   * Distance of vertices along the outline of a source image, in pixels, above 0. The default is
+   * 25.
    */
   vtkSetMacro(Spacing, double);
   vtkGetMacro(Spacing, double);
@@ -75,8 +75,8 @@ public:
 
   ///@{
   /**
-   * Whether the gradient is that of the target's grey values, rather than of its largest component.
-   * Off by default.
+   * Whether to use the gradient of the target's gray values instead of its largest component. The
+   * default is off.
    */
   vtkSetMacro(GreyGradient, bool);
   vtkGetMacro(GreyGradient, bool);

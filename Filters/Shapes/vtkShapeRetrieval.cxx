@@ -41,12 +41,12 @@ struct ShapeSet
   std::vector<std::string> names, labels;
   std::vector<tautline::Silhouette> shapes;
   std::vector<tautline::Thumbnail> pictures;
-  std::vector<std::string> classes;     ///< in order of their first shape
+  std::vector<std::string> classes;     ///< in the order of their first shape
   std::vector<tautline::Index> numbers; ///< of the class of each shape
   std::vector<std::string> leftOut;     ///< "name: why"
 };
 
-/// Names the shapes that are left out; "" without one.
+/// Lists the shapes that are left out; "" if there are none.
 std::string describeLeftOut(const ShapeSet& set)
 {
   if (set.leftOut.empty())
@@ -238,7 +238,7 @@ vtkShapeRetrieval::~vtkShapeRetrieval() = default;
 int vtkShapeRetrieval::FillInputPortInformation(int, vtkInformation* info)
 {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkMultiBlockDataSet");
-  // Also other types, so that the message can name the remedy.
+  // Accepts other types as well, so that the message can give the remedy.
   info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataObject");
   return 1;
 }
@@ -310,7 +310,7 @@ int vtkShapeRetrieval::RequestData(
       }
       if (result.stop != tautline::MatchStop::Complete)
       {
-        text << " Ended early: distances of -1 were not computed.";
+        text << " Stopped early: distances of -1 were not computed.";
       }
       const std::string leftOut = describeLeftOut(set);
       this->Summary = text.str() + (leftOut.empty() ? "" : "\n") + leftOut;

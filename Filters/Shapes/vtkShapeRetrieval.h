@@ -1,29 +1,30 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkShapeRetrieval
- * @brief "Shape Retrieval": matches each of a set of silhouettes with each other one, and ranks
- * them.
+ * @brief "Shape Retrieval": matches the silhouettes of a set with each other, and ranks the
+ * matches.
  *
  * @par Input:
- * vtkMultiBlockDataSet of images, as the silhouette-set reader gives them: the name of a block is
- * the name of the shape, its field array `Label` (string or number) the class. Without labels the
- * class is the name up to its first digit.
+ * vtkMultiBlockDataSet of images, as from vtkSilhouetteSetReader: the name of a block is the name
+ * of the shape, and its field array `Label` (string or number) the class. Without labels, the class
+ * is the name up to its first digit.
  *
  * @par Output ports 0 to 3, vtkTable:
- * Port 0, Distances: `Name`, `Label` and a column per shape with the distance to it; -1 where the
- * run ended before. Port 1, Ranking: a row for each of the best matches of each query: `Query`,
- * `QueryLabel`, `Rank`, `Match`, `MatchLabel`, `Distance`, `Correct`. Port 2, Statistics: a row per
- * rank, `Rank`, `Correct` (queries whose match at that rank is of their class), `Rate` in percent
- * of the queries; the field array `RecognitionRate` (percent of all) is also GetRecognitionRate().
- * Port 3, Confusion: `Label` and a column per class: the percentage of the best matches of a
- * class's shapes that are of each class.
+ * Port 0, Distances: `Name`, `Label` and a column per shape with the distance to it; -1 if the run
+ * ended before it was computed. Port 1, Ranking: a row for each of the best matches of each query:
+ * `Query`, `QueryLabel`, `Rank`, `Match`, `MatchLabel`, `Distance`, `Correct`. Port 2, Statistics:
+ * a row per rank, `Rank`, `Correct` (number of queries whose match at this rank belongs to their
+ * class), `Rate` in percent of the queries; the field array `RecognitionRate` (percent of all)
+ * equals GetRecognitionRate(). Port 3, Confusion: `Label` and a column per class: the percentage of
+ * the best matches of a class's shapes that belong to each class.
  *
  * @par Output port 4, vtkImageData:
- * Sheet: a square picture (colours, the array `Sheet`) with a row for each query, in a grey frame,
- * and its best matches, at most 10, in a green frame if they are of its class, in a red one if not.
+ * Sheet: a square picture (colors, the array `Sheet`) with a row for each query, in a gray frame,
+ * and its best matches, at most 10, in a green frame if they belong to its class, otherwise in a
+ * red one.
  *
- * The recognition rate is the number of best matches of the query's own class, as a fraction of
- * those possible (dissertation section 5.3); the query itself does not count.
+ * The recognition rate is the number of best matches of the query's own class, as a fraction of the
+ * possible number (dissertation section 5.3); the query itself does not count.
  *
  * @sa vtkSilhouetteSetReader, vtkShapeMatcher, tautline::retrieveShapes
  * (tautline/Shapes/ShapeRetrieval.h)
@@ -52,7 +53,7 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   /**
-   * Settings by name.
+   * The names of the settings.
    */
   enum Settings
   {
@@ -64,12 +65,12 @@ public:
 
   ///@{
   /**
-   * CUSTOM (0): the properties as they are. DISSERTATION (1): spacing 25, 30 x 30 grid, a = 4 b,
-   * theta = d_max / 3. FELZENSZWALB (2): the same without the distortion and the centre of mass.
-   * HIGHEST (3, the default): polygons are placed on outlines rather than in images, in order
-   * (tautline/Shapes/OutlineMatch.h), whatever the sizes, directions and mirroring of the shapes.
-   * All but CUSTOM override the properties of
-   * the energy, the locations, the spacing, the rule and Symmetric.
+   * CUSTOM (0): the current properties. DISSERTATION (1): spacing 25, 30 x 30 grid, a = 4 b, theta
+   * = d_max / 3. FELZENSZWALB (2): the same without the distortion and the center of mass. HIGHEST
+   * (3, the default): polygons are matched with outlines instead of images, in order
+   * (tautline/Shapes/OutlineMatch.h), independent of the sizes, directions and mirroring of the
+   * shapes. All settings except CUSTOM override the properties of the energy, the locations, the
+   * spacing, the rule and Symmetric.
    */
   vtkTautlineSetRangeMacro(Setting, int, CUSTOM, HIGHEST);
   vtkGetMacro(Setting, int);
@@ -77,7 +78,7 @@ public:
 
   ///@{
   /**
-   * Distance of vertices along the outlines, pixels, above 0. The default is 25.
+   * Distance of vertices along the outlines in pixels, above 0. The default is 25.
    */
   vtkSetMacro(Spacing, double);
   vtkGetMacro(Spacing, double);
@@ -85,7 +86,8 @@ public:
 
   ///@{
   /**
-   * Whether the distance counts both directions, each by its number of triangles. Off by default.
+   * Whether the distance includes both directions, each weighted by its number of triangles. The
+   * default is off.
    */
   vtkSetMacro(Symmetric, bool);
   vtkGetMacro(Symmetric, bool);
@@ -94,9 +96,9 @@ public:
 
   ///@{
   /**
-   * Of each shape, the number of others that it is matched with, those whose descriptors are
-   * distributed most alike, at least 0; 0, the default: all. With HIGHEST only. Distances that are
-   * not computed are -1.
+   * The number of other shapes with which each shape is matched (the ones with the most similar
+   * distribution of descriptors), at least 0; 0, the default, means all. Only with HIGHEST.
+   * Distances that are not computed are -1.
    */
   vtkSetMacro(Shortlist, int);
   vtkGetMacro(Shortlist, int);
@@ -104,9 +106,9 @@ public:
 
   ///@{
   /**
-   * Distances are replaced by those after diffusion over graphs of so many nearest neighbours, at
-   * least 0; 0, the default: they are not. They then depend on the whole set, so rates with and
-   * without it do not compare.
+   * The number of nearest neighbors in the graphs over which distances are diffused, at least 0; 0,
+   * the default, means no diffusion. Diffused distances depend on the whole set, so that rates with
+   * and without diffusion are not comparable.
    */
   vtkSetMacro(Neighbors, int);
   vtkGetMacro(Neighbors, int);
@@ -114,7 +116,7 @@ public:
 
   ///@{
   /**
-   * Matches per query that count, at least 1. The default is 10.
+   * Number of matches per query that count, at least 1. The default is 10.
    */
   vtkSetMacro(BestMatches, int);
   vtkGetMacro(BestMatches, int);
@@ -130,7 +132,7 @@ public:
 
   ///@{
   /**
-   * Results of the last run: the rate in percent, and what was found, in words.
+   * Results of the last run: the rate in percent, and a summary.
    */
   vtkGetMacro(RecognitionRate, double);
   ///@}
@@ -152,12 +154,12 @@ private:
   vtkShapeRetrieval(const vtkShapeRetrieval&) = delete;
   void operator=(const vtkShapeRetrieval&) = delete;
 
-  /// What the other processes do while the first one is in RequestData(), in step with it.
+  /// The work of the other processes in step with the first, which is in RequestData().
   void Assist();
 
   tautline::RetrievalOptions GetOptionsOfRun();
 
-  std::unique_ptr<tautline::RankGroup> Group; ///< of several processes, in an execution
+  std::unique_ptr<tautline::RankGroup> Group; ///< for several processes, during an execution
   int Setting = HIGHEST;
   double Spacing = 25.0;
   bool Symmetric = false;

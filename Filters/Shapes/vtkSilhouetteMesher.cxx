@@ -30,7 +30,7 @@ vtkStandardNewMacro(vtkSilhouetteMesher);
 
 namespace
 {
-/// Adds what is known of the shape as field arrays, in the unit of space.
+/// Adds the data of the shape as field arrays, in the unit of space.
 void addFacts(
   vtkDataSet* output, const tautline::Silhouette& shape, const tautline::GreyImage& image)
 {

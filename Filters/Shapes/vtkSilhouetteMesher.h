@@ -1,30 +1,30 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkSilhouetteMesher
- * @brief "Silhouette to Mesh": the triangulated polygon around what an image shows.
+ * @brief "Silhouette to Mesh": converts the shape in an image to a triangulated polygon.
  *
- * The largest component of the foreground of a binary, grey or colour image is traced to sub-pixel,
- * a simple polygon with nearly equally spaced vertices is laid along its outline, and the polygon
- * gets a constrained Delaunay triangulation without interior points (dissertation sections 5.2.1
- * and 5.2.2). That is the source shape of Match Shape.
+ * The largest foreground component of a binary, gray or color image is traced with subpixel
+ * accuracy, a simple polygon with nearly equally spaced vertices is fitted to its outline, and the
+ * polygon gets a constrained Delaunay triangulation without interior points (dissertation sections
+ * 5.2.1 and 5.2.2). The result is the source shape for Match Shape.
  *
  * @par Input:
- * vtkImageData of one slice with square pixels and a point or cell array: grey values, colours
- * (their luminance is taken), or with an alpha channel (taken if it is not constant). Input array 0
- * chooses it; the default are the active scalars.
+ * vtkImageData of one slice with square pixels and a point or cell array: gray values, colors
+ * (converted to luminance), or with an alpha channel (used if it is not constant). Input array 0
+ * selects it; the default is the active scalars.
  *
  * @par Output 0, Mesh:
  * vtkUnstructuredGrid of n - 2 triangles. Point arrays `BoundaryOrder` (0 to n - 1,
- * counter-clockwise) and `EliminationOrder` (the step at which dynamic programming is done with the
+ * counterclockwise) and `EliminationOrder` (the step at which dynamic programming eliminates the
  * vertex; the last two are never eliminated); cell array `EliminationStep`. Field arrays:
- * `CentreOfMass` (2, in space, of the area inside the outline), `MaximumDistance` (d_max, from
- * there to the outline), `Area`, `Components`, `Holes`, `TouchesBorder`.
+ * `CentreOfMass` (2, in space, of the area inside the outline), `MaximumDistance` (d_max, from this
+ * center to the outline), `Area`, `Components`, `Holes`, `TouchesBorder`.
  *
  * @par Output 1, Outline:
  * vtkPolyData, the traced outline as one closed line.
  *
  * @par Limitations:
- * Holes and smaller components are counted and ignored. The image must be planar: extract a slice
+ * Holes and smaller components are counted but ignored. The image must be planar: extract a slice
  * of a volume first.
  *
  * @par Example:
@@ -54,7 +54,7 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   /**
-   * Which side of the threshold the shape is on.
+   * The side of the threshold that is the shape.
    */
   enum Foregrounds
   {
@@ -74,7 +74,8 @@ public:
 
   ///@{
   /**
-   * Whether Threshold is used. Off, the default: midway between the minimum and the maximum.
+   * Whether to use Threshold. If off, the default, the threshold is midway between the minimum and
+   * the maximum.
    */
   vtkSetMacro(UseThreshold, bool);
   vtkGetMacro(UseThreshold, bool);
@@ -83,7 +84,7 @@ public:
 
   ///@{
   /**
-   * The grey value between the shape and its surroundings. The default is 127.5.
+   * The gray value that separates the shape from its surroundings. The default is 127.5.
    */
   vtkSetMacro(Threshold, double);
   vtkGetMacro(Threshold, double);
@@ -91,8 +92,8 @@ public:
 
   ///@{
   /**
-   * Which side of the threshold is the shape: AUTOMATIC (0, the default: the side that fewer pixels
-   * of the border of the image are on), BRIGHT (1) or DARK (2).
+   * The side of the threshold that is the shape: AUTOMATIC (0, the default: the side with fewer
+   * pixels on the border of the image), BRIGHT (1) or DARK (2).
    */
   vtkTautlineSetRangeMacro(Foreground, int, AUTOMATIC, DARK);
   vtkGetMacro(Foreground, int);
@@ -100,7 +101,7 @@ public:
 
   ///@{
   /**
-   * What was found, in words, and the counts.
+   * A summary of the findings, and the counts.
    */
   vtkGetMacro(Summary, std::string);
   vtkGetMacro(NumberOfComponents, int);
@@ -109,8 +110,8 @@ public:
 
   ///@{
   /**
-   * Seconds for an execution, at least 0; 0 is no limit. After it the execution ends with an error.
-   * The default is 600.
+   * Time limit of an execution in seconds, at least 0; 0 means no limit. After it the execution
+   * ends with an error. The default is 600.
    */
   vtkTautlineSetRangeMacro(TimeLimit, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(TimeLimit, double);

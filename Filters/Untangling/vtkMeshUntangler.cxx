@@ -43,9 +43,9 @@ constexpr const char* BoundaryRemedy = "choose another Boundary";
 /// In the order of tautline::Obstacle.
 constexpr std::array<const char*, 5> reasons = { "valid",
   "the iterations ended before it became valid; try another Boundary or a higher Effort",
-  "all its points are fixed; free some, or repair it by hand",
-  "the fixed points around leave no valid place for its free ones; free some of them",
-  "a fixed point of it is NaN or infinite" };
+  "all its points are fixed; free some, or repair it manually",
+  "the surrounding fixed points leave no valid position for its free ones; free some of them",
+  "one of its fixed points is NaN or infinite" };
 
 void addFlags(vtkDataSet* output, const char* name, const std::vector<signed char>& values)
 {
@@ -59,12 +59,12 @@ void addFlags(vtkDataSet* output, const char* name, const std::vector<signed cha
 /// An element that is not valid.
 struct Remaining
 {
-  std::string name; ///< "Element 3"; in pieces without the number, which the whole mesh has not
+  std::string name; ///< "Element 3"; without the number for pieces
   tautline::Obstacle obstacle;
   tautline::Vec3 center;
 };
 
-/// The elements with an obstacle, by id; in pieces by the numbers of their points.
+/// The elements with an obstacle, by id, or for pieces by the numbers of their points.
 std::vector<Remaining> remainingOf(
   const tautline::UntangleResult& result, const tautline::MovableMesh& mesh)
 {
@@ -110,7 +110,7 @@ std::vector<signed char> obstaclesOf(
   return obstacles;
 }
 
-/// Why the boundary needs the whole mesh, which is untangled in pieces only where it does not move.
+/// The reason why the boundary needs the whole mesh; pieces are supported only if it does not move.
 tautline::NeedOfWholeMesh needOfUntangling(
   const tautline::BoundaryProperties& properties, bool features)
 {
@@ -120,15 +120,16 @@ tautline::NeedOfWholeMesh needOfUntangling(
     : tautline::needOfWholeMesh(properties, features);
 }
 
-/// ", and N that were valid are not any more", or "".
+/// ", and N that were valid no longer are", or "".
 std::string newlySentence(tautline::Index newlyInvalid)
 {
   return newlyInvalid == 0
     ? ""
-    : ", and " + std::to_string(newlyInvalid) + " that were valid are not any more";
+    : ", and " + std::to_string(newlyInvalid) + " that were valid no longer are";
 }
 
-/// "All elements are valid", or how many are not, and for the first of them which, where and why.
+/// "All elements are valid", or the number of invalid elements, with the position of and the reason
+/// for the first ones.
 std::string verdict(const tautline::UntangleResult& result, const std::vector<Remaining>& remaining)
 {
   std::ostringstream text;
@@ -179,7 +180,7 @@ int vtkMeshUntangler::RequestData(
     {
       tautline::TableRows history;
       vtkDataObject* geometry = vtkDataObject::GetData(inputVector[GeometryPort]);
-      // Blocks that touch would come apart; a boundary that slides only where it has to stays then.
+      // Touching blocks would come apart; a boundary that slides only if necessary is then fixed.
       const bool moves = this->Boundary == SLIDING || this->Boundary == FREE || geometry;
       this->ForEachBlock(inputVector, outputVector, nullptr, SelectionPort, moves,
         [&](const tautline::InputBlock& block)
@@ -220,7 +221,7 @@ void vtkMeshUntangler::Untangle(
   const std::unique_ptr<tautline::MovableMesh> made = this->MakeMesh(block, true);
   tautline::MovableMesh& mesh = *made;
   tautline::BoundaryProperties properties = this->GetBoundaryProperties(geometry);
-  // What is chosen without being asked for must not refuse surfaces, pieces and blocks that touch.
+  // A default must not reject surfaces, pieces and touching blocks.
   const bool onSurface = mesh.mesh().dimension() == tautline::Dimension::Surface;
   const bool stays = this->Boundary == ON_SURFACE && !geometry &&
     (onSurface || mesh.inPieces() || !this->GetBlockNotice().empty());
@@ -230,7 +231,7 @@ void vtkMeshUntangler::Untangle(
   }
   if (onSurface && !geometry)
   {
-    properties.keepFeatures = false; // points stay on the facets that are given
+    properties.keepFeatures = false; // points stay on the given facets
   }
   if (mesh.inPieces())
   {
@@ -261,7 +262,7 @@ void vtkMeshUntangler::Untangle(
   {
     more += (more.empty() ? "" : " ") + std::to_string(result.offSurface) +
       (result.offSurface == 1 ? " point is" : " points are") +
-      " not on the surface that they slide on, at most " +
+      " not on the surface on which they slide, at most " +
       tautline::distanceText(
         mesh.frame().unit() * result.offSurfaceDistance, block.input->GetLength()) +
       " away.";
@@ -269,28 +270,28 @@ void vtkMeshUntangler::Untangle(
   if (stays && result.invertedAfter > 0)
   {
     more += std::string(more.empty() ? "" : " ") +
-      (onSurface ? "The boundary stayed, as it must on a surface in space."
-                 : "The boundary stayed, as it must on several processes and where blocks touch: "
-                   "merge the blocks, or aggregate the mesh with Reproducible Order off, to let it "
-                   "slide.");
+      (onSurface ? "The boundary was kept fixed, as required for a surface in space."
+                 : "The boundary was kept fixed, as required on several processes and if blocks "
+                   "touch: merge the blocks, or aggregate the mesh with Reproducible Order off, to "
+                   "allow it to slide.");
   }
   this->Show(block, mesh, result, more, history);
   this->AddToSummary(result.exceededMemory
-      ? "The whole mesh did not fit into the memory of the first process, where the elements that "
-        "are left would have been untangled: take fewer cells, or more memory."
+      ? "The whole mesh did not fit into the memory of the first process, where the remaining "
+        "elements would have been untangled: use fewer cells or more memory."
       : "");
 }
 
 //------------------------------------------------------------------------------
-/// A mesh with polyhedra: all its cells, as finite volumes.
+/// Untangles all cells of a mesh with polyhedra, as finite volumes.
 void vtkMeshUntangler::UntanglePolyhedra(
   const tautline::InputBlock& block, vtkDataObject* geometry, tautline::TableRows& history)
 {
   using namespace tautline;
   if (this->ReproducibleOrder)
   {
-    throw Error("Polyhedra have no reproducible order of several processes: switch Reproducible "
-                "Order off.");
+    throw Error("Polyhedra do not support the reproducible order of several processes: switch "
+                "Reproducible Order off.");
   }
   PolyhedralMesh mesh(block, this->Threads);
   BoundaryProperties properties = this->GetBoundaryProperties(geometry);
@@ -348,8 +349,8 @@ void vtkMeshUntangler::UntangleCurved(
 {
   if (this->ReproducibleOrder)
   {
-    throw tautline::Error("Curved cells have no reproducible order of several processes: switch "
-                          "Reproducible Order off.");
+    throw tautline::Error("Curved cells do not support the reproducible order of several "
+                          "processes: switch Reproducible Order off.");
   }
   tautline::CurvedMotion motion(block, this->Threads, this->MergeCoincidentPoints);
   motion.fix(tautline::chosenArray(
@@ -388,7 +389,7 @@ void vtkMeshUntangler::UntangleCurved(
     result.obstacles[cell] = static_cast<signed char>(tautline::Obstacle::Unknown);
   }
   this->HaveBest();
-  std::string more = "Curved cells are certified in all of the cell.";
+  std::string more = "Curved cells are certified throughout the cell.";
   if (found.straightened > 0)
   {
     more += " " + std::to_string(found.straightened) +
@@ -396,14 +397,14 @@ void vtkMeshUntangler::UntangleCurved(
   }
   if (found.reason == tautline::StopReason::NoFreeVertices)
   {
-    more += " No node of the invalid cells and around them is free: choose another Boundary, "
-            "switch Mid Nodes Only off, or fix fewer points.";
+    more += " No node of or around the invalid cells is free: choose another Boundary, switch Mid "
+            "Nodes Only off, or fix fewer points.";
   }
   this->Show(block, motion.corners(), result, more, history);
 }
 
 //------------------------------------------------------------------------------
-/// Writes a result to the output and adds to the summary. @param more sentences on it, or ""
+/// Writes a result to the output and adds to the summary. @param more further sentences, or ""
 void vtkMeshUntangler::Show(const tautline::InputBlock& block, const tautline::MovableMesh& mesh,
   tautline::UntangleResult& result, const std::string& more, tautline::TableRows& history)
 {

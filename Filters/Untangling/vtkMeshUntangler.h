@@ -3,51 +3,50 @@
  * @class vtkMeshUntangler
  * @brief Makes the elements of a mesh valid by moving its points.
  *
- * Takes triangles, quadrilaterals, tetrahedra, hexahedra, wedges and pyramids, also mixed, from
- * data sets with explicit points, or blocks of these. The connectivity stays. Points of the
- * boundary slide where elements are not valid without that (ON_SURFACE, the default of Boundary).
- * The output never has more inverted elements than the
- * input. Its report is a guarantee: that every element is valid, or which are not, where they are,
- * and why.
+ * Supports triangles, quadrilaterals, tetrahedra, hexahedra, wedges and pyramids, also mixed, in
+ * data sets with explicit points, or blocks of these. The connectivity does not change. Points of
+ * the boundary slide only if elements are otherwise not valid (ON_SURFACE, the default of
+ * Boundary). The output never has more inverted elements than the input. The report guarantees that
+ * every element is valid, or lists the invalid elements with their positions and the reasons.
  *
  * A mesh reversed throughout is treated as its mirror image, and so is a cell that lists its points
  * in the opposite order of the others. Parts without a consistent orientation and image data
- * (implicit points) are refused. For better elements run vtkMeshOptimizer afterwards.
+ * (implicit points) are not supported. For better elements run vtkMeshOptimizer afterwards.
  *
- * A mesh with polyhedra is untangled as one of finite volumes, with its other cells: a cell is
- * valid if its volume and the pyramids over its faces are positive, see
- * tautline/Polyhedral/ImproveFaces.h. The boundary stays unless another Boundary is chosen. Method
- * and Effort are not used then, and of several processes the first one has the whole mesh.
+ * In a mesh with polyhedra, all cells are untangled as finite volumes: a cell is valid if its
+ * volume and the pyramids over its faces are positive, see tautline/Polyhedral/ImproveFaces.h. The
+ * boundary is fixed unless another Boundary is chosen. Method and Effort are then not used, and
+ * with several processes the mesh is gathered on the first one.
  *
- * Of cells of quadratic and higher order, all nodes move, and the whole cell is certified to be
- * valid, see tautline/Curved/UntangleCurved.h. They are of volumes, or in a plane. Method and
- * Effort are not used then.
+ * In meshes of quadratic and higher-order cells, in volumes or in a plane, all nodes move, and
+ * cells are certified to be valid throughout, see tautline/Curved/UntangleCurved.h. Method and
+ * Effort are then not used.
  *
  * @par Input ports:
  * 0 the mesh; 1 (optional) a vtkSelection of points or cells that stay; 2 (optional) the geometry:
  * triangles or quadrilaterals, for planar meshes lines or cells in the plane, that the boundary
  * slides on (ON_SURFACE).
  *
- * Arrays of the mesh (SetInputArrayToProcess), by index: 0 fixed points (not 0), 1 kinds of the
- * points (0 patch, 1 curve, 2 corner, -1 as found), 2 regions (cells).
+ * Arrays of the mesh (SetInputArrayToProcess), by index: 0 fixed points (where not 0), 1 kinds of
+ * the points (0 patch, 1 curve, 2 corner, -1 as detected), 2 regions (cells).
  *
  * @par Output port 0 `Mesh`:
  * The input with new points, the point array `Displacement` (new minus old) and the cell arrays
- * `Validity` (see vtkElementQuality) and `Obstacle` (signed char), why an element is not valid: 0
- * it is valid, 1 unknown (the iterations ended), 2 all its points are fixed, 3 the fixed points
- * around leave no place, 4 a fixed point is NaN or infinite. Points in single precision stay so
- * unless a valid element would not be valid when rounded.
+ * `Validity` (see vtkElementQuality) and `Obstacle` (signed char), the reason why an element is not
+ * valid: 0 it is valid, 1 unknown (the iterations ended), 2 all its points are fixed, 3 the
+ * surrounding fixed points leave no valid position, 4 a fixed point is NaN or infinite. Points in
+ * single precision stay so unless rounding would make a valid element invalid.
  *
  * @par Output port 1 `History`:
  * A vtkTable whose row i is iteration i (0 is the input): `Objective` (the energy), `Inverted`
- * (with degenerate elements), `N gradient`, `N moving` (points), `Time (s)`; of composite data sets
- * also `Block`.
+ * (with degenerate elements), `N gradient`, `N moving` (points), `Time (s)`; for composite data
+ * sets also `Block`.
  *
  * @par Several processes:
- * Each may have pieces of the mesh. Volume meshes and planar ones are worked on where they are, in
- * the reproducible order, with a boundary that stays instead of sliding ON_SURFACE. Surfaces in
- * space, inclined planes, blocks and what is left inverted are gathered on the first process; the
- * summary names what was gathered and why.
+ * Each process may have pieces of the mesh. Volume meshes and planar meshes are untangled in place,
+ * in the reproducible order, with a fixed boundary instead of sliding ON_SURFACE. Surfaces in
+ * space, inclined planes, blocks and remaining inverted elements are gathered on the first process;
+ * the summary reports this and the reason.
  *
  * Dissertation section 3.3.3; Escobar et al. 2003 and Garanzha et al. 2021, see
  * tautline/Untangling/Untangle.h.
@@ -88,7 +87,7 @@ public:
   };
   ///@{
   /**
-   * The method: AUTOMATIC moves what is around inverted elements, then all points, as far as
+   * The method: AUTOMATIC moves the points around inverted elements, then all points, as far as
    * Effort allows; SIMULTANEOUS is the simultaneous untangling and smoothing of Escobar et al.
    * 2003, which moves every point, for comparison. The default is AUTOMATIC.
    */
@@ -104,16 +103,16 @@ public:
   };
   ///@{
   /**
-   * The effort of the automatic method: LOCAL moves only what is around inverted elements, NORMAL
-   * then all points, THOROUGH for thousands of iterations and from several starts. The default is
-   * NORMAL.
+   * The effort of the automatic method: LOCAL moves only the points around inverted elements,
+   * NORMAL then moves all points, THOROUGH does so for thousands of iterations and from several
+   * starts. The default is NORMAL.
    */
   vtkTautlineSetRangeMacro(Effort, int, LOCAL, THOROUGH);
   vtkGetMacro(Effort, int);
   ///@}
 
   ///@{
-  /// Whether only the nodes of curved cells between their corners move. Off.
+  /// Whether only the nodes of curved cells between their corners move. The default is off.
   vtkSetMacro(MidNodesOnly, bool);
   vtkGetMacro(MidNodesOnly, bool);
   vtkBooleanMacro(MidNodesOnly, bool);
@@ -121,8 +120,8 @@ public:
 
   ///@{
   /**
-   * Whether, as a last resort, the nodes of curved cells that remain invalid go to where they are
-   * in a straight cell, which may leave the surface. Off.
+   * Whether, as a last resort, the nodes of curved cells that remain invalid move to their
+   * positions in a straight cell, which may be off the surface. The default is off.
    */
   vtkSetMacro(Straighten, bool);
   vtkGetMacro(Straighten, bool);
@@ -131,9 +130,9 @@ public:
 
   ///@{
   /**
-   * Whether one process, too, works in the order that does not depend on how a mesh is spread over
-   * processes, which several processes use unless the mesh is gathered: the points are then the
-   * same on any number of them. Off.
+   * Whether a single process also uses the order of operations that does not depend on the
+   * distribution of the mesh, which several processes use unless the mesh is gathered: the points
+   * are then the same on any number of processes. The default is off.
    */
   vtkSetMacro(ReproducibleOrder, bool);
   vtkGetMacro(ReproducibleOrder, bool);
@@ -142,8 +141,8 @@ public:
 
   ///@{
   /**
-   * The result of the last execution; numbers are of all blocks together. Inverted elements include
-   * degenerate ones; infeasible (`Impossible`) are those with an Obstacle of 2 or 3.
+   * The results of the last execution; numbers cover all blocks. Inverted elements include
+   * degenerate ones; elements with an Obstacle of 2 or 3 are infeasible (`Impossible`).
    */
   const char* GetReason() const { return this->Reason.c_str(); }
   vtkIdType GetInvertedBefore() const { return this->InvertedBefore; }
@@ -186,7 +185,7 @@ private:
   vtkIdType InvertedBefore = 0;
   vtkIdType InvertedAfter = 0;
   vtkIdType Impossible = 0;
-  vtkIdType NotValid = 0; ///< with NaN coordinates too
+  vtkIdType NotValid = 0; ///< including NaN coordinates
 };
 
 #endif

@@ -32,7 +32,7 @@ void forEachElementOf(const Mesh& mesh, const Visit& visit)
   }
 }
 
-/// What elements are sorted by; of equal ones, their points.
+/// The sort key of elements; ties are broken by their points.
 struct ElementKey
 {
   Index least, sum; ///< of its points
@@ -125,8 +125,8 @@ void AdaptationMesh::takePoints(const Mesh& mesh, const std::vector<Index>& repr
     });
   if (count == 0)
   {
-    throw Error("There is no element: give a mesh of triangles, quadrilaterals, tetrahedra, "
-                "hexahedra, wedges or pyramids.");
+    throw Error("The mesh has no elements: provide a mesh of triangles, quadrilaterals, "
+                "tetrahedra, hexahedra, wedges or pyramids.");
   }
   this->Origins.assign(count, -1);
   this->Coordinates.resize(3 * count);
@@ -137,7 +137,7 @@ void AdaptationMesh::takePoints(const Mesh& mesh, const std::vector<Index>& repr
     place = place < count ? place : -1;
     if (place >= 0)
     {
-      this->Origins[place] = p; // of points that are one, the first
+      this->Origins[place] = p; // the first of merged points
       std::copy_n(view.points + 3 * p, 3, &this->Coordinates[3 * place]);
     }
   }
@@ -256,7 +256,7 @@ void AdaptationMesh::findNeighbors()
 //------------------------------------------------------------------------------
 void AdaptationMesh::findNormals()
 {
-  // Where facets cancel each other, as on a folded surface, the largest one has the normal.
+  // Where facet normals cancel, as on a folded surface, the normal of the largest facet is used.
   constexpr double cancelled = 1e-6;
   const MeshView& view = this->Elements->view();
   const Vec3& plane = this->Elements->normal();

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file AdaptationMesh.h
- * @brief The elements of a mesh and what fields of metrics at their points need: neighbors, shares
- * of the volume, normals.
+ * @brief The elements of a mesh and the data that metric fields at their points need: neighbors,
+ * volume shares, and normals.
  *
- * Points and elements are numbered by their coordinates, so that sums and the order of neighbors,
- * and with them the results, do not depend on how the mesh lists them (the curvature up to
+ * Points and elements are numbered by their coordinates. Sums, the order of neighbors, and
+ * therefore the results do not depend on the numbering in the mesh (for the curvature: up to
  * rounding).
  */
 #ifndef tautline_AdaptationMesh_h
@@ -22,12 +22,14 @@ class TAUTLINE_KERNEL_EXPORT AdaptationMesh
 {
 public:
   /**
-   * @param mesh its cells of the highest dimension are the elements; of cells of higher order the
-   * corners count. May be destroyed afterwards.
-   * @param representative one per point, of points that are one the first; empty: each is itself
-   * @param skip one flag per cell: it does not count in volumes, as a ghost; may be null
+   * @param mesh its cells of the highest dimension are the elements; only the corners of
+   * higher-order cells are used. May be destroyed afterwards.
+   * @param representative one per point: the first of the points merged with it; empty: no merged
+   *   points
+   * @param skip one flag per cell: the cell is excluded from volumes, for example a ghost; may be
+   *   null
    *
-   * Throws Error if there is no element, or an element has a point that is not finite.
+   * Throws Error if there are no elements or a point of an element is not finite.
    */
   explicit AdaptationMesh(const Mesh& mesh, const std::vector<Index>& representative = {},
     const unsigned char* skip = nullptr, int threads = 0);
@@ -44,7 +46,7 @@ public:
   /// The diagonal of the bounding box.
   double diagonal() const { return diagonalOf(this->Elements->view()); }
 
-  /// Indices that follow each other in memory.
+  /// Indices contiguous in memory.
   struct List
   {
     const Index *first, *last;
@@ -64,26 +66,26 @@ public:
     return { all + this->Around.offsets[p], all + this->Around.offsets[p + 1] };
   }
 
-  /// Per element its area or volume, at least 0, whatever its orientation.
+  /// Per element: its area or volume, at least 0 for either orientation.
   const std::vector<double>& sizes() const { return this->Sizes; }
-  /// Per point its share of the area or volume: each element is divided equally among its points.
+  /// Per point: its share of the area or volume. Each element is divided equally among its points.
   const std::vector<double>& volumes() const { return this->Volumes; }
-  /// The same with each element divided by the area or volume of the ideal one with edges of
-  /// length 1: sqrt(3)/4 for triangles, sqrt(2)/12 for tetrahedra, 1 for quadrilaterals and
-  /// hexahedra, sqrt(3)/4 for wedges, sqrt(2)/6 for pyramids.
+  /// The same, with each element size divided by the size of the ideal element with unit edges:
+  /// sqrt(3)/4 for triangles, sqrt(2)/12 for tetrahedra, 1 for quadrilaterals and hexahedra,
+  /// sqrt(3)/4 for wedges, sqrt(2)/6 for pyramids.
   const std::vector<double>& idealVolumes() const { return this->IdealVolumes; }
   /// Per point the unit normal of a planar mesh or surface; empty for a volume.
   const std::vector<Vec3>& normals() const { return this->Normals; }
 
-  /// Values per point of the mesh as given, `components` each, as values per point here.
+  /// Converts values per point of the input mesh, `components` each, to values per point here.
   std::vector<double> taken(const double* values, int components) const;
-  /// Metrics per point here as 6 numbers per point of the mesh as given.
-  /// @param other of points without an element
+  /// Converts metrics per point here to 6 numbers per point of the input mesh.
+  /// @param other the value for points without an element
   std::vector<double> given(
     const std::vector<MetricTensor>& metrics, const MetricTensor& other) const;
-  /// Per point here its number in the mesh as given.
+  /// Per point here: its number in the input mesh.
   const std::vector<Index>& origins() const { return this->Origins; }
-  /// Per point of the mesh as given its number here; -1: none.
+  /// Per point of the input mesh: its number here; -1: none.
   const std::vector<Index>& places() const { return this->Places; }
 
 private:

@@ -19,7 +19,7 @@ constexpr Index surfacePointsPerChunk = 256;
 /// The size with the chord error e at the radius R is sqrt(8 e R).
 constexpr double chordFactor = 8.0;
 
-/// The metric of a tensor of curvature.
+/// The metric of a curvature tensor.
 MetricTensor metricOfCurvature(MetricTensor curvature, double chordError, double largest)
 {
   for (double& entry : curvature)
@@ -132,7 +132,7 @@ private:
   {
     // Twice as many points as a quadric has coefficients, as it is a second derivative of data.
     constexpr std::size_t enough = 2 * static_cast<std::size_t>(unknownsOf(2));
-    constexpr double level = 1e-3; // slope of the fit below which the normal is that of the surface
+    constexpr double level = 1e-3; // slope of the fit below which the surface normal is kept
     constexpr int turns = 3;
     std::vector<Index> ring;
     this->grow(p, patch, ring);

@@ -14,7 +14,7 @@ namespace tautline
 namespace
 {
 constexpr Index pointsPerSearch = 256; // in a chunk
-/// The gradient of a distance has length 1; shorter ones are the mean of several directions.
+/// The gradient of a distance has length 1; a shorter gradient is a mean of several directions.
 constexpr double clearGradient = 0.5;
 
 /// The walls as triangles, or as edges with the last corner twice.
@@ -26,8 +26,8 @@ SurfacePart wallsOf(const AdaptationMesh& mesh, const std::vector<unsigned char>
   facets.forEachFacet(
     [&](Index first, const FacetUse* uses, Index count)
     {
-      // In order around the facet: the first point, its neighbor, the opposite one of four, the
-      // other neighbor.
+      // In cyclic order around the facet: the first point, its neighbor, the opposite point (of
+      // quadrilaterals), the other neighbor.
       const auto& others = uses->others;
       const std::array<Index, MaxFaceNodes> nodes = { first, others[0],
         others[2] >= 0 ? others[2] : others[1], others[2] >= 0 ? others[1] : -1 };
@@ -57,7 +57,7 @@ std::vector<double> wallDistances(
     throw Error(marks.empty()
         ? "The mesh is closed and has no boundary to measure the distance from: choose an array "
           "with the distance."
-        : "No facet of the boundary has all its points marked as wall: mark the points of whole "
+        : "No boundary facet has all its points marked as wall: mark the points of whole "
           "facets.");
   }
   const SurfaceProjection projection(walls, nullptr);

@@ -11,8 +11,8 @@
 namespace tautline
 {
 /**
- * @brief Per point, the distance along a straight line from the walls: facets of the boundary (of
- * surfaces edges of the border) of which all points are marked.
+ * @brief Per point: the straight-line distance from the walls, which are the boundary facets (on
+ * surfaces: the border edges) with all points marked.
  * @param marks one flag per point of the mesh; empty: the whole boundary
  *
  * Throws Error if there is no such facet.
@@ -23,16 +23,16 @@ TAUTLINE_KERNEL_EXPORT std::vector<double> wallDistances(
 struct LayerSizes
 {
   double first = 1.0;  ///< size at the wall, along the gradient of the distance; above 0
-  double growth = 1.2; ///< of each layer against the one before; at least 1
-  double ratio = 1.0;  ///< of the tangential size at the wall to the first one; at least 1
+  double growth = 1.2; ///< thickness ratio of consecutive layers; at least 1
+  double ratio = 1.0;  ///< of the tangential size at the wall to the first size; at least 1
 };
 
 /**
- * @brief The metrics of layers: at a distance s the size is h(s) = first + (growth - 1) s along the
- * gradient of the distance, which makes layers grow by this factor, and across it
- * max(ratio first, h(s)). Where the distance has no clear gradient, as between two walls, h(s) in
- * all directions.
- * @param distances per point of the mesh; the sign does not count
+ * @brief The metrics of boundary layers. At a distance s, the size is h(s) = first + (growth - 1) s
+ * along the gradient of the distance, so that layers grow by this factor, and max(ratio first,
+ * h(s)) across it. Where the distance has no clear gradient, as between two walls, the size is h(s)
+ * in all directions.
+ * @param distances per point of the mesh; the sign is ignored
  */
 TAUTLINE_KERNEL_EXPORT std::vector<MetricTensor> distanceMetrics(
   const AdaptationMesh& mesh, const std::vector<double>& distances, const LayerSizes& sizes);

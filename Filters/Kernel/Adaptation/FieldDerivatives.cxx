@@ -15,8 +15,8 @@ namespace
 {
 constexpr Index pointsPerChunk = 256; // of fits, which take microseconds each
 
-/// The gradients of the functions that are 1 at one corner of a simplex and 0 at the others, but
-/// for the first corner; false without volume.
+/// The gradients of the functions that are 1 at one corner of a simplex and 0 at the others, for
+/// all corners except the first; false if the simplex has no volume.
 bool shapeGradients(const Vec3* p, int dimension, std::array<Vec3, 3>& gradients)
 {
   const Vec3 a = p[1] - p[0], b = p[2] - p[0];
@@ -76,8 +76,8 @@ std::vector<Vec3> projectedGradients(const AdaptationMesh& mesh, const Value& va
 }
 
 /**
- * Gives points of the boundary and next to it, where gradients are taken from one side, the mean of
- * the points next to them, from the inside outwards.
+ * Replaces the one-sided gradients at the boundary and next to it by the mean of the neighboring
+ * points, from the inside outwards.
  */
 void extendToBoundary(const AdaptationMesh& mesh, std::vector<MetricTensor>& hessians)
 {
@@ -94,7 +94,7 @@ void extendToBoundary(const AdaptationMesh& mesh, std::vector<MetricTensor>& hes
     }
     if (std::count(known.begin(), known.end(), 1) > 0)
     {
-      break; // else those within the mesh are all next to its boundary
+      break; // otherwise all interior points are next to the boundary
     }
   }
   std::vector<Index> left;
@@ -147,9 +147,9 @@ std::vector<MetricTensor> projectedHessians(
   }
   if (others > 0)
   {
-    throw Error("The double projection takes triangles and tetrahedra, and " +
+    throw Error("The double projection supports only triangles and tetrahedra, but " +
       std::to_string(others) +
-      " elements are others: choose the quadratic fit, or run Tetrahedralize first.");
+      " elements have other types: choose the quadratic fit, or run Tetrahedralize first.");
   }
   const std::vector<Vec3> gradients = projectedGradients(mesh, [&](Index p) { return values[p]; });
   std::array<std::vector<Vec3>, 3> rows;

@@ -3,7 +3,7 @@
  * @file FieldDerivatives.h
  * @brief Gradient and Hessian of a field that is known at the points of a mesh.
  *
- * On surfaces they are those along the surface: the components along the normal are 0.
+ * On surfaces, they are tangential: the components along the normal are 0.
  */
 #ifndef tautline_FieldDerivatives_h
 #define tautline_FieldDerivatives_h
@@ -15,12 +15,12 @@ namespace tautline
 enum class HessianRecovery
 {
   /// A quadratic is fitted to the values at the neighbors of a point: exact for quadratics where
-  /// these determine it. For all types of elements.
+  /// the neighbors determine it. Supports all element types.
   QuadraticFit,
-  /// The gradients of the elements are averaged, weighted by volume, and once more the gradients of
-  /// these. Smoother; of first order where the mesh is smoothly graded, not convergent where it is
-  /// irregular. At the boundary and next to it they are extended from inside. Triangles and
-  /// tetrahedra only.
+  /// The volume-weighted mean of the element gradients, applied twice for second derivatives.
+  /// Smoother; first-order accurate where the mesh is smoothly graded, not convergent where it is
+  /// irregular. At and next to the boundary, values are extrapolated from the interior. Triangles
+  /// and tetrahedra only.
   DoubleProjection
 };
 
@@ -32,14 +32,14 @@ TAUTLINE_KERNEL_EXPORT std::vector<Vec3> recoverGradients(
  * @brief The Hessians at the points.
  * @param values one per point of the mesh
  *
- * Throws Error if the double projection is asked for and there are other elements.
+ * Throws Error if the double projection is requested for a mesh with other elements.
  */
 TAUTLINE_KERNEL_EXPORT std::vector<MetricTensor> recoverHessians(
   const AdaptationMesh& mesh, const std::vector<double>& values, HessianRecovery recovery);
 
 /**
- * @brief Per point, what eigenvalues of a Hessian are at most if they are nothing but rounding of
- * the values.
+ * @brief Per point: an upper bound on the eigenvalues of a Hessian that results only from rounding
+ * of the values.
  * @param precision relative, of the values: 2^-52 for double, 2^-23 for single precision
  */
 TAUTLINE_KERNEL_EXPORT std::vector<double> hessianNoise(

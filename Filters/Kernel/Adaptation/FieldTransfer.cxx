@@ -20,16 +20,16 @@ namespace tautline
 namespace
 {
 constexpr Index PlacesPerChunk = 256;
-/// Meshes are in one plane if no point is farther from it, over the diagonal of both.
+/// Meshes are coplanar if no point is farther from the plane, relative to the common diagonal.
 constexpr double FlatMesh = 1e-6;
 /// How many components are projected at once: each needs memory for every simplex.
 constexpr std::size_t ComponentsAtOnce = 16;
-/// A source that covers less of the target is an error, as of meshes in different units of length.
+/// A source that covers less of the target is an error, for example a mistaken unit of length.
 constexpr double LeastOverlap = 1e-6;
 constexpr const char* NoOverlap = "The meshes do not overlap";
-/// Totals are kept if each mesh covers this part of the other at least.
+/// Totals are preserved if each mesh covers at least this fraction of the other.
 constexpr double LeastCoverage = 0.5;
-/// Fields whose values are between these are computed with as they are.
+/// Fields with all magnitudes in this range need no scaling.
 constexpr double SmallestValue = 1e-60, LargestValue = 1e60;
 
 BoundingBox boxOfMesh(const TransferMesh& mesh)
@@ -69,21 +69,22 @@ void requireElements(const TransferMesh& target, const TransferMesh& source)
     if (mesh->numberOfSimplices() == 0)
     {
       throw Error(std::string(mesh == &target ? "The target" : "The source") +
-        " has no element with an area or volume: give a mesh of triangles, quadrilaterals, "
+        " has no element with an area or volume: provide a mesh of triangles, quadrilaterals, "
         "polygons, tetrahedra, hexahedra, wedges or pyramids.");
     }
   }
   if (target.dimension() != source.dimension())
   {
     throw Error(target.dimension() == 3
-        ? "The target is a volume and the source is not: give two volumes, or two surfaces "
+        ? "The target is a volume, but the source is not: provide two volumes or two surfaces "
           "(Extract Surface)."
-        : "The source is a volume and the target is not: give two volumes, or two surfaces "
+        : "The source is a volume, but the target is not: provide two volumes or two surfaces "
           "(Extract Surface).");
   }
 }
 
-/// Where the meshes are; those in one plane get their coordinates in it, with z = 0.
+/// Determines the space of the two meshes; coplanar meshes are converted to in-plane coordinates
+/// with z = 0.
 TransferSpace enterPlane(TransferMesh& target, TransferMesh& source)
 {
   if (target.dimension() == 3)
@@ -123,8 +124,8 @@ TransferSpace enterPlane(TransferMesh& target, TransferMesh& source)
   return TransferSpace::Plane;
 }
 
-/// Which values change where totals are kept: nonzero for those next to where only one of the
-/// meshes is; all 0 if there is no such place.
+/// The values that may change to preserve totals: nonzero next to regions covered by only one of
+/// the meshes; all 0 if there are none.
 struct BesideGaps
 {
   std::vector<unsigned char> cells, points;
@@ -173,7 +174,7 @@ BesideGaps findGaps(
   return gaps;
 }
 
-/// A component in a unit in which no value is very large or small: a power of two.
+/// A component scaled by a power of two so that no value is very large or small.
 struct Component
 {
   std::size_t field;
@@ -232,7 +233,7 @@ std::vector<double> sizesOfCells(const TransferMesh& mesh)
   return sizes;
 }
 
-/// What a transfer computes with.
+/// The state of a transfer.
 class FieldTransfer
 {
 public:
@@ -312,7 +313,7 @@ void FieldTransfer::findOverlaps()
 {
   if (this->Options.method == TransferMethod::Interpolate)
   {
-    // The boxes of surfaces are wider than these.
+    // The boxes of surfaces are wider than the surfaces.
     if (!this->Locator.tree().bounds().meets(boxOfMesh(this->Target)))
     {
       failWithoutOverlap(NoOverlap, this->Target, this->Source, this->Options.frame);
@@ -340,7 +341,7 @@ void FieldTransfer::findOverlaps()
   this->Gaps = findGaps(this->Target, this->Source, this->Overlaps);
 }
 
-/// The cells of the source that are known, or else nearest to the centers.
+/// The source cells already known, otherwise the cells nearest to the centers.
 std::vector<Index> FieldTransfer::nearestCells(const std::vector<Index>& known) const
 {
   std::vector<Index> cells(known);
@@ -485,7 +486,7 @@ void FieldTransfer::transferPoints()
   }
 }
 
-/// Keeps the total, where it is to be kept, and reports.
+/// Restores the total, if requested, and records the report.
 void FieldTransfer::finish(const Component& component, BoundedValues& values)
 {
   const TransferField& field = this->Fields[component.field];

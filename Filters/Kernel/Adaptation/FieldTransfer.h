@@ -1,22 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file FieldTransfer.h
- * @brief Fields of a mesh on another one: conservative and bounded, or interpolated.
+ * @brief Transfers fields from one mesh to another: conservative and bounded, or interpolated.
  *
- * Values of cells (P0) are means over what a cell of the target overlaps, weighted by the area or
- * volume in common. Values of points (P1) are the L2 projection onto the functions that are linear
- * on each simplex, computed on the intersections of the simplices, and limited by flux-corrected
- * transport so that each is within the values of the simplices of the source which its own
- * simplices overlap:
+ * Cell values (P0) are means over the overlapped source cells, weighted by the common area or
+ * volume. Point values (P1) are the L2 projection onto the functions that are linear on each
+ * simplex, computed on the intersections of the simplices, and limited by flux-corrected transport
+ * so that each value stays within the range of the source simplices that its own simplices overlap:
  *
  *     M u = b,  M_ij = int phi_i phi_j,  b_i = int u_source phi_i,  m_i = sum_j M_ij
  *     v_i = b_i / m_i + 1 / m_i sum_j a_ij M_ij (u_i - u_j),  0 <= a_ij = a_ji <= 1
  *
- * The v_i have the total sum_i b_i, whatever the a_ij. (P. E. Farrell and J. R. Maddison,
- * "Conservative interpolation between volume meshes by local Galerkin projection", Comput. Methods
- * Appl. Mech. Engrg. 200, 2011; S. T. Zalesak, "Fully multidimensional flux-corrected transport
- * algorithms for fluids", J. Comput. Phys. 31, 1979; T. J. Barth and D. C. Jespersen, "The design
- * and application of upwind schemes on unstructured meshes", AIAA 89-0366, 1989.)
+ * The v_i have the total sum_i b_i for any a_ij. (P. E. Farrell and J. R. Maddison, "Conservative
+ * interpolation between volume meshes by local Galerkin projection", Comput. Methods Appl. Mech.
+ * Engrg. 200, 2011; S. T. Zalesak, "Fully multidimensional flux-corrected transport algorithms for
+ * fluids", J. Comput. Phys. 31, 1979; T. J. Barth and D. C. Jespersen, "The design and application
+ * of upwind schemes on unstructured meshes", AIAA 89-0366, 1989.)
  */
 #ifndef tautline_FieldTransfer_h
 #define tautline_FieldTransfer_h
@@ -33,16 +32,17 @@ namespace tautline
 enum class TransferMethod : int
 {
   Conservative = 0,
-  Interpolate = 1 ///< points: the value at the nearest place; cells: of the cell at the center
+  /// points: the value at the nearest location; cells: the value of the cell at the center
+  Interpolate = 1
 };
 
-/// What a field of cells is within a cell of the source. The numbers are stable.
+/// How a cell field varies within a source cell. The numbers are stable.
 enum class CellReconstruction : int
 {
-  Constant = 0, ///< first order; bounded by the cells that are overlapped
+  Constant = 0, ///< first order; bounded by the overlapped cells
   /// Linear, by least squares from the cells that share a point, with the limiter of Barth and
-  /// Jespersen: second order where that does not act, which it does at extrema and along the
-  /// boundary; bounded by these cells.
+  /// Jespersen: second order except at extrema and along the boundary, where the limiter acts;
+  /// bounded by these cells.
   Linear = 1
 };
 
@@ -51,15 +51,15 @@ struct TransferOptions
   TransferMethod method = TransferMethod::Conservative;
   CellReconstruction cells = CellReconstruction::Constant;
   /**
-   * @brief Whether totals are kept where only one of the meshes has a place. What is lost or added
-   * is then made up by the values next to these places; within their bounds if these suffice. Only
-   * for TransferMethod::Conservative, and only if each mesh covers half of the other at least:
-   * otherwise values could be of any size.
+   * @brief Whether totals are preserved where only one of the meshes covers a region. The lost or
+   * added amount is then compensated by the values next to this region, within their bounds if
+   * possible. Only for TransferMethod::Conservative, and only if each mesh covers at least half of
+   * the other: otherwise values could become arbitrarily large.
    */
   bool keepTotal = true;
   bool cellLabels = false;  ///< whether TransferResult::cells is needed
   bool pointLabels = false; ///< whether TransferResult::points is needed
-  CoordinateFrame frame;    ///< that both meshes are in, for messages
+  CoordinateFrame frame;    ///< of both meshes, for messages
   int threads = 0;          ///< as in Parallel.h; the result does not depend on it
 };
 
@@ -71,13 +71,13 @@ struct TransferField
   std::vector<double> values; ///< finite; components per point or cell of the source
 };
 
-/// What became of a component of a field; the total is the integral over the elements.
+/// The totals of one field component; a total is the integral over the elements.
 struct TransferTotal
 {
   double before = 0, after = 0;
   double magnitude = 0; ///< the integral of the absolute value before
   double minimumBefore = 0, maximumBefore = 0, minimumAfter = 0, maximumAfter = 0;
-  double excess = 0; ///< how far a value is outside of the values that it comes from
+  double excess = 0; ///< the largest excess of a value over the range of its source values
 };
 
 struct TransferredField
@@ -89,23 +89,24 @@ struct TransferredField
 struct TransferResult
 {
   std::vector<TransferredField> fields; ///< in the order given
-  /// Per cell of the target: the cell of the source that it overlaps most, or else the one nearest
+  /// Per cell of the target: the cell of the source that it overlaps most; if none, the one nearest
   /// to its center.
   std::vector<Index> cells;
   std::vector<Index> points; ///< per point of the target: the nearest point of the source
-  double sourceSize = 0, targetSize = 0;       ///< areas or volumes
-  double sourceCovered = 0, targetCovered = 0; ///< of these, what the other mesh has; conservative
+  double sourceSize = 0, targetSize = 0; ///< areas or volumes
+  /// the part that the other mesh covers; conservative only
+  double sourceCovered = 0, targetCovered = 0;
   bool surface = false;
   bool totalsKept = false; ///< whether TransferOptions::keepTotal had an effect
-  /// Elements and points of the target without anything of the source: they have the nearest value.
+  /// Target elements and points that the source does not cover: they take the nearest value.
   Index nearestCells = 0, nearestPoints = 0;
 };
 
 /**
  * @brief Transfers fields from the source to the target.
  *
- * Two planar meshes in one plane are computed with in the plane; triangles in space are seen along
- * the normal of each triangle of the target.
+ * Coplanar meshes are processed in their plane; triangles in space are projected along the normal
+ * of each target triangle.
  *
  * Throws Error if the meshes differ in their dimension, one of them has no element with an area or
  * volume, or the source covers less than 1e-6 of the target.

@@ -71,6 +71,7 @@ HessianMagnitudes hessianMagnitudes(const AdaptationMesh& mesh, const std::vecto
     {
       pollInterruption(static_cast<Index>(p));
       MetricTensor& m = result.tensors[p];
+      // A zero tensor means no information, so it does not take part in the intersection.
       const bool both = next[p] != MetricTensor{} && m != MetricTensor{};
       m = both ? intersection(m, next[p]) : m == MetricTensor{} ? next[p] : m;
     }
@@ -100,6 +101,7 @@ LpMetric::LpMetric(const AdaptationMesh& mesh, const std::vector<MetricTensor>& 
   , Axes(hessians.size())
   , Determinants(hessians.size())
 {
+  // The optimal metric for the L^p norm is det(|H|)^(-1 / (2 p + d)) |H|, up to a factor.
   const double exponent = -1.0 / (2.0 * norm + mesh.dimension());
   parallelFor(mesh.numberOfPoints(), ChunkSize, mesh.threads(),
     [&](Index p)
@@ -153,7 +155,7 @@ double LpMetric::integralAt(const std::vector<double>& weights, double factor) c
 //------------------------------------------------------------------------------
 double LpMetric::factorFor(const std::vector<double>& weights, double target) const
 {
-  // The integral grows with the factor, without limits as its power d / 2.
+  // The integral grows with the factor: without size limits, as its power d / 2.
   constexpr double step = 16.0, precision = 1e-12;
   constexpr int maximumSteps = 64;
   double low = 1.0;

@@ -3,8 +3,8 @@
  * @file LpMetric.h
  * @brief The metric that minimizes the interpolation error of a field in the L^p norm.
  *
- * M = D det(|H|)^(-1 / (2 p + d)) |H|, of the Hessian H with the absolute values of its
- * eigenvalues, in d dimensions; D sets the number of elements: A. Loseille and F. Alauzet,
+ * M = D det(|H|)^(-1 / (2 p + d)) |H| in d dimensions, where |H| is the Hessian H with the absolute
+ * values of its eigenvalues, and D sets the number of elements. See A. Loseille and F. Alauzet,
  * "Continuous mesh framework part I: well-posed continuous interpolation error", SIAM J. Numerical
  * Analysis 49 (2011).
  */
@@ -15,11 +15,11 @@
 
 namespace tautline
 {
-/// The absolute values of Hessians, positive definite, in a unit in which those of doubles are
-/// ordinary numbers.
+/// The absolute values of Hessians, positive definite, in a unit that avoids overflow and
+/// underflow.
 struct HessianMagnitudes
 {
-  std::vector<MetricTensor> tensors; ///< per point; of planar meshes and surfaces flattened()
+  std::vector<MetricTensor> tensors; ///< per point; flattened() for planar meshes and surfaces
   double unit = 1.0;                 ///< of the tensors
   bool vanish = false;               ///< the field is linear, to rounding: there are no tensors
 };
@@ -27,8 +27,9 @@ struct HessianMagnitudes
 /**
  * @brief |H| of a field. Where it has several components, the intersection() of their |H|.
  *
- * Eigenvalues that are rounding of the values count as 0. What is less than the largest one at the
- * point over ratio^2, or 1e-12 of the largest one of all points, becomes this.
+ * Eigenvalues within the rounding of the values are treated as 0. Eigenvalues are raised to at
+ * least the largest one at the point over ratio^2, and at least 1e-12 of the largest one of all
+ * points.
  * @param values `components` per point of the mesh, finite
  * @param precision of the values, see hessianNoise()
  * @param ratio of sizes at a point, at least 1, finite
@@ -39,7 +40,7 @@ TAUTLINE_KERNEL_EXPORT HessianMagnitudes hessianMagnitudes(const AdaptationMesh&
 
 /**
  * @class tautline::LpMetric
- * @brief The metrics for all factors D, within limits.
+ * @brief The metrics for any factor D, within limits.
  */
 class TAUTLINE_KERNEL_EXPORT LpMetric
 {
@@ -56,7 +57,7 @@ public:
   std::vector<MetricTensor> at(double factor) const;
 
   /// The factor with which the integral of the root of the determinant, with these weights of the
-  /// points, is `target`; where the limits do not allow that, the nearest integral.
+  /// points, is `target`; where the limits prevent this, the factor with the nearest integral.
   /// @param weights AdaptationMesh::volumes() or idealVolumes()
   double factorFor(const std::vector<double>& weights, double target) const;
 

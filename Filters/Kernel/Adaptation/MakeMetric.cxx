@@ -20,7 +20,7 @@ void requireRange(const char* name, double value, bool holds, const char* range)
   if (!holds)
   {
     std::ostringstream text;
-    text << name << " is " << value << ": give a number " << range << ".";
+    text << name << " is " << value << ": enter a number " << range << ".";
     throw Error(text.str());
   }
 }
@@ -80,7 +80,7 @@ std::vector<MetricTensor> metricsOfSizes(const AdaptationMesh& mesh, const Point
 {
   if (!sizes.values || (sizes.components != 1 && sizes.components != tensorSize))
   {
-    throw Error("Sizes are needed: give a point array with one component (sizes) or six (metric "
+    throw Error("Sizes are needed: choose a point array with one component (sizes) or six (metric "
                 "tensors).");
   }
   const bool tensors = sizes.components == tensorSize;
@@ -145,8 +145,8 @@ public:
     }
     if (!result.gradation.complete)
     {
-      this->note("The gradation was ended after " + std::to_string(MaximumGradationRounds) +
-        " rounds, in which sizes still changed.");
+      this->note("The gradation stopped after " + std::to_string(MaximumGradationRounds) +
+        " rounds, while sizes were still changing.");
     }
     return std::move(result);
   }
@@ -205,7 +205,7 @@ private:
     const std::vector<double>& volumes = this->TheMesh.volumes();
     if (!(std::accumulate(volumes.begin(), volumes.end(), 0.0) > 0.0))
     {
-      throw Error("The elements have no area or volume: give another mesh.");
+      throw Error("The elements have no area or volume: use another mesh.");
     }
     const std::vector<double> field = finiteValues(this->TheMesh, o.field, o.fieldComponents,
       "A field is needed: choose a point array.", "values of the field");
@@ -213,8 +213,8 @@ private:
       this->TheMesh, field, o.fieldComponents, o.recovery, o.fieldPrecision, o.limits.ratio);
     if (hessians.vanish)
     {
-      this->note("The field is linear: its interpolation has no error, and the sizes are the "
-                 "largest ones.");
+      this->note("The field is linear: its interpolation has no error, and all sizes are the "
+                 "largest size.");
       return this->finished(std::vector<MetricTensor>(
         this->TheMesh.numberOfPoints(), isotropicMetric(o.limits.largest)));
     }
@@ -224,7 +224,7 @@ private:
       : this->withTarget(metric);
   }
 
-  /// Corrects the factor for what intersection and gradation add.
+  /// Corrects the factor for the elements that intersection and gradation add.
   std::vector<MetricTensor> withTarget(const LpMetric& metric)
   {
     constexpr int maximumCorrections = 8;
@@ -243,7 +243,7 @@ private:
         elements ? expectedElements(this->TheMesh, metrics) : complexity(this->TheMesh, metrics);
       if (found == before || std::abs(found / o.targetValue - 1.0) < near)
       {
-        break; // in the former case the limits have all sizes
+        break; // all sizes are at a limit
       }
       requested *= o.targetValue / found;
     }
@@ -251,8 +251,8 @@ private:
     {
       std::ostringstream text;
       text << "The target of " << o.targetValue << (elements ? " elements" : "")
-           << " is not reached, it is " << found
-           << ": change the smallest and largest size, the anisotropy or the gradation.";
+           << " was not reached (result: " << found
+           << "): change the smallest and largest size, the anisotropy or the gradation.";
       this->note(text.str());
     }
     return metrics;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MakeMetric.h
- * @brief The metric tensors of a mesh from one source, within limits and graded: what the filter
- * Metric Tensor computes.
+ * @brief The metric tensors of a mesh from one source, limited and graded; the algorithm of the
+ * Metric Tensor filter.
  *
- * Example: a metric for about 5000 triangles with the least interpolation error of a field.
+ * Example: a metric for about 5000 triangles that minimizes the interpolation error of a field.
  *
  *     tautline::MetricOptions options;
  *     options.source = tautline::MetricSource::Hessian;
@@ -29,12 +29,12 @@ namespace tautline
 enum class MetricSource
 {
   Sizes,     ///< given sizes or metrics
-  Hessian,   ///< the least interpolation error of a field, see LpMetric
+  Hessian,   ///< minimizes the interpolation error of a field, see LpMetric
   Curvature, ///< of the surface, see curvatureMetrics()
   Distance   ///< from a wall, see distanceMetrics()
 };
 
-/// What sets the sizes of MetricSource::Hessian.
+/// The criterion that sets the sizes of MetricSource::Hessian.
 enum class MetricTarget
 {
   Elements,   ///< expectedElements()
@@ -42,7 +42,7 @@ enum class MetricTarget
   Error       ///< of the interpolation, see LpMetric::factorForError()
 };
 
-/// Sizes per point: one number, or the six of a metric tensor.
+/// Sizes per point: one number, or six numbers of a metric tensor.
 struct PointSizes
 {
   const double* values = nullptr;
@@ -57,11 +57,12 @@ struct MetricOptions
 
   const double* field = nullptr; ///< MetricSource::Hessian, `fieldComponents` per point
   int fieldComponents = 1;
-  double fieldPrecision = std::numeric_limits<double>::epsilon(); ///< relative, of its values
+  /// relative precision of its values
+  double fieldPrecision = std::numeric_limits<double>::epsilon();
   HessianRecovery recovery = HessianRecovery::QuadraticFit;
   double norm = 2.0; ///< p, at least 1; infinity: the largest error
   MetricTarget target = MetricTarget::Elements;
-  double targetValue = 10000.0; ///< above 0; of the final metric, except for an error
+  double targetValue = 10000.0; ///< above 0; for the final metric, unless it is an error
 
   double chordError = 1.0;    ///< MetricSource::Curvature, above 0
   double featureAngle = 40.0; ///< degrees, 0 to 180
@@ -75,36 +76,36 @@ struct MetricOptions
   MetricLimits limits;
   double gradation = 0.0; ///< growth factor above 1; 0: none
 
-  /// One per point, of points that are one the first; empty: all are themselves.
+  /// One per point: the first of the points merged with it; empty: no merged points.
   std::vector<Index> representative;
-  const unsigned char* skip = nullptr; ///< per cell: it does not count in volumes, as a ghost
+  const unsigned char* skip = nullptr; ///< per cell: excluded from volumes, for example a ghost
   int threads = 0;
 };
 
-/// Ratios above are lost in the rounding of a tensor.
+/// Larger ratios are lost to rounding in a tensor.
 constexpr double MaximumSizeRatio = 1e4;
 
 struct MetricResult
 {
   std::vector<double> tensors; ///< 6 per point; the largest size at points without an element
-  /// Per point of the mesh the unit normal of a planar mesh or surface; empty for a volume.
+  /// Per point of the mesh: the unit normal of a planar mesh or surface; empty for a volume.
   std::vector<Vec3> normals;
-  /// The points of elements in the order of their coordinates, of points that are one the first.
+  /// The points of elements in the order of their coordinates; the first of merged points.
   std::vector<Index> points;
   double complexity = 0.0, elements = 0.0; ///< see complexity() and expectedElements()
   MetricExtremes extremes;
   GradationResult gradation;
-  std::string note; ///< sentences on what was not reached, or ""
+  std::string note; ///< sentences about targets that were not reached, or ""
 };
 
 /**
- * @brief Computes the metrics: of the source, intersected with the others, within the limits,
- * graded, and with the smallest size and the ratio once more within the limits.
+ * @brief Computes the metrics from the source, intersects them with the others, limits and grades
+ * them, and limits the smallest size and the ratio again.
  *
- * With a target number of elements or complexity the factor of the Hessian is corrected until the
- * final metric reaches it to 1 %, where the limits and the gradation allow it. Throws Error for
- * options out of range, arrays with values that are not finite or not positive, and meshes without
- * elements.
+ * With a target number of elements or a target complexity, the factor of the Hessian is corrected
+ * until the final metric reaches it to 1 %, where the limits and the gradation allow it. Throws
+ * Error for options out of range, array values that are not finite or not positive, and meshes
+ * without elements.
  */
 TAUTLINE_KERNEL_EXPORT MetricResult makeMetric(const Mesh& mesh, const MetricOptions& options);
 }

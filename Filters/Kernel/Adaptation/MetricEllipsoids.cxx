@@ -134,14 +134,15 @@ void addEllipsoid(Index point, const Vec3& center, const MetricTensor& metric, c
   std::transform(axes.values.begin(), axes.values.end(), sizes.begin(),
     [](double value) { return 1.0 / std::sqrt(value); });
   ellipsoids.centers.push_back(point);
-  // Roots first: products of extreme sizes would overflow.
+  // Take roots first: products of extreme sizes would overflow.
   ellipsoids.sizes.push_back(normal
       ? std::sqrt(sizes[0]) * std::sqrt(sizes[2])
       : std::cbrt(sizes[0]) * std::cbrt(sizes[1]) * std::cbrt(sizes[2]));
   ellipsoids.ratios.push_back(sizes[0] / sizes[2]);
   if (normal)
   {
-    // The larger size is along the normal, too: the axis in the plane is across the other one.
+    // The larger size is also along the normal, so the in-plane axis is perpendicular to the other
+    // one.
     const Vec3 along = cross(*normal, axes.axes[2]);
     const double length = norm(along);
     const auto [t1, t2] = frameOfPlane(*normal);

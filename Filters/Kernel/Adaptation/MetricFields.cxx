@@ -29,8 +29,8 @@ double integralOf(const AdaptationMesh& mesh, const std::vector<double>& weights
 }
 
 /**
- * Gradation in rounds. In each, points next to those that changed in the round before take the
- * metrics as they were after it, so that their order does not matter.
+ * Gradation in rounds. In each, points next to those that changed in the round before use the
+ * metrics from the end of that round, so that their order does not matter.
  */
 class Gradation
 {
@@ -88,7 +88,8 @@ public:
 
 private:
   static constexpr double tolerance = 1e-7;
-  static constexpr double smallestShare = 0.9; ///< of the smallest size, that it is reduced to
+  /// of the smallest size: the lower bound on its reduction
+  static constexpr double smallestShare = 0.9;
   static constexpr Index pointsPerChunk = 512;
 
   void findAxes(const std::vector<Index>& points)
@@ -105,7 +106,7 @@ private:
     return next;
   }
 
-  /// The metric of a point with what its neighbors have grown to.
+  /// The metric of a point intersected with the grown metrics of its neighbors.
   MetricTensor graded(Index p) const
   {
     const bool flat = this->TheMesh.dimension() == 2;
@@ -114,7 +115,7 @@ private:
     {
       if (!this->Changed[q])
       {
-        continue; // its metric was taken before
+        continue; // its metric was already used
       }
       MetricTensor grown =
         grownMetric(this->Axes[q], this->TheMesh.point(p) - this->TheMesh.point(q), this->Rate);
@@ -136,9 +137,8 @@ private:
 
   /**
    * Intersections of metrics with different axes have smaller sizes than both, and after many
-   * rounds sizes would become ever smaller. Between these two functions, which keep the order
-   * of metrics (what exceeds another one does so after them), an intersection stays below the
-   * highest eigenvalue allowed.
+   * rounds sizes would become ever smaller. Between these two functions, which preserve the order
+   * of metrics, an intersection stays below the highest eigenvalue allowed.
    */
   MetricTensor raised(const MetricTensor& m) const
   {
@@ -257,7 +257,7 @@ GradationResult gradeMetrics(
   if (!(growth > 1.0) || !std::isfinite(growth))
   {
     throw Error("The growth factor of the gradation is " + std::to_string(growth) +
-      ": give a number above 1, such as 1.5.");
+      ": use a number above 1, such as 1.5.");
   }
   return Gradation(mesh, std::log(growth), metrics).run();
 }

@@ -46,6 +46,7 @@ bool isPositiveDefinite(const MetricTensor& m)
   {
     entry /= largest; // products of extreme entries would overflow
   }
+  // Sylvester's criterion.
   const double minor = s[0] * s[1] - s[3] * s[3];
   const double determinant =
     s[2] * minor - s[4] * (s[0] * s[4] - s[3] * s[5]) + s[5] * (s[3] * s[4] - s[1] * s[5]);
@@ -172,7 +173,7 @@ MetricTensor limited(const MetricTensor& m, const MetricLimits& limits)
 //------------------------------------------------------------------------------
 MetricTensor grownMetric(const MetricAxes& axes, const Vec3& e, double rate)
 {
-  // The factors have the exponents 1/8, of each size, and 7/8, common to all.
+  // The exponents are 1/8 for the factor of each size, and 7/8 for the common factor.
   const auto eighthRoot = [](double x) { return std::sqrt(std::sqrt(std::sqrt(x))); };
   double length2 = 0.0;
   for (int k = 0; k < 3; ++k)
@@ -197,7 +198,7 @@ MetricTensor flattened(const MetricTensor& m, const Vec3& normal)
   const auto [t1, t2] = frameOfPlane(normal);
   const std::array<Vec3, 3> axes = { t1, t2, normal };
   MetricTensor plane = turned(m, axes);
-  // The smaller eigenvalue by the determinant: the difference of the mean and the radius cancels.
+  // The smaller eigenvalue follows from the determinant: mean minus radius would cancel.
   const double mean = 0.5 * (plane[0] + plane[1]);
   const double larger = mean + std::hypot(0.5 * (plane[0] - plane[1]), plane[3]);
   const double determinant = plane[0] * plane[1] - plane[3] * plane[3];

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MetricTensor.h
- * @brief Algebra of metric tensors, which state the target lengths of edges at a point.
+ * @brief Algebra of metric tensors, which define the target edge lengths at a point.
  *
  * A metric tensor M is symmetric and positive definite. The length of an edge e in it is
  * sqrt(e . M e). Along a principal axis with eigenvalue v, edges of size 1 / sqrt(v) have length 1;
@@ -10,8 +10,8 @@
  *     const MetricTensor fine = isotropicMetric(0.1); // edges of length 0.1 have length 1
  *     const MetricTensor both = intersection(fine, other);
  *
- * The functions take finite, positive definite tensors (isPositiveDefinite()) unless stated
- * otherwise, and do not check them.
+ * The functions require finite, positive definite tensors (isPositiveDefinite()) unless stated
+ * otherwise, and do not check this.
  */
 #ifndef tautline_MetricTensor_h
 #define tautline_MetricTensor_h
@@ -33,16 +33,16 @@ struct MetricAxes
   std::array<Vec3, 3> axes;
 };
 
-/// What sizes are allowed.
+/// The allowed sizes.
 struct MetricLimits
 {
   double smallest = 0.0;                                    ///< size, at least 0
   double largest = std::numeric_limits<double>::infinity(); ///< size, at least the smallest
-  /// The largest quotient of two sizes at a point, at least 1.
+  /// The largest ratio of two sizes at a point, at least 1.
   double ratio = std::numeric_limits<double>::infinity();
 };
 
-/// The square of the length of an edge; of any symmetric tensor e . m e.
+/// The squared length of an edge; for any symmetric tensor, e . m e.
 inline double squaredLength(const Vec3& e, const MetricTensor& m)
 {
   return m[0] * e[0] * e[0] + m[1] * e[1] * e[1] + m[2] * e[2] * e[2] +
@@ -61,7 +61,7 @@ inline double squaredLength(const Vec3& e, const MetricTensor& a, const MetricTe
 TAUTLINE_KERNEL_EXPORT double edgeLength(
   const Vec3& e, const MetricTensor& a, const MetricTensor& b);
 
-/// The metric in which all edges of a length, above 0, have length 1.
+/// The metric in which all edges of the given length, above 0, have length 1.
 inline MetricTensor isotropicMetric(double length)
 {
   const double m = 1.0 / (length * length);
@@ -77,7 +77,7 @@ TAUTLINE_KERNEL_EXPORT MetricAxes principalAxes(const MetricTensor& m);
 /// The tensor with these eigenvalues and axes.
 TAUTLINE_KERNEL_EXPORT MetricTensor tensorOf(const MetricAxes& axes);
 
-/// A symmetric tensor in coordinates x . axes[i].
+/// A symmetric tensor expressed in the coordinates x . axes[i].
 TAUTLINE_KERNEL_EXPORT MetricTensor turned(const MetricTensor& m, const std::array<Vec3, 3>& axes);
 
 /// The symmetric tensor with f of the eigenvalues: its logarithm, its absolute value, ...
@@ -93,11 +93,11 @@ MetricTensor functionOf(const MetricTensor& m, const Function& f)
 }
 
 /**
- * @brief The metric in which no edge is shorter than in one of two: both are diagonal in common
- * coordinates (simultaneous reduction), in which it has the larger entries.
+ * @brief The metric in which no edge is shorter than in either of the two: both are diagonalized
+ * simultaneously, and the larger entries are taken.
  *
  * It is `a` itself if no edge is longer in b, and b if none is in a.
- * @param tolerance relative, of the entries of b: what is not exceeded by more counts as equal
+ * @param tolerance relative to the entries of b: smaller differences are treated as equal
  */
 TAUTLINE_KERNEL_EXPORT MetricTensor intersection(
   const MetricTensor& a, const MetricTensor& b, double tolerance = 1e-9);
@@ -109,8 +109,8 @@ TAUTLINE_KERNEL_EXPORT MetricTensor intersection(
 TAUTLINE_KERNEL_EXPORT MetricTensor logEuclideanMean(
   const std::vector<MetricTensor>& metrics, const std::vector<double>& weights);
 
-/// The eigenvalues, in increasing order, within limits: first of the sizes, then of their ratio,
-/// which reduces the largest sizes.
+/// The eigenvalues, in increasing order, limited: first by the sizes, then by their ratio, which
+/// reduces the largest sizes.
 TAUTLINE_KERNEL_EXPORT std::array<double, 3> limitedValues(
   std::array<double, 3> values, const MetricLimits& limits);
 
@@ -118,7 +118,7 @@ TAUTLINE_KERNEL_EXPORT std::array<double, 3> limitedValues(
 TAUTLINE_KERNEL_EXPORT MetricTensor limited(const MetricTensor& m, const MetricLimits& limits);
 
 /**
- * @brief The metric at the other end of an edge if sizes grow along it: by the mixed-space law of
+ * @brief The metric at the other end of an edge along which sizes grow, by the mixed-space law of
  * F. Alauzet, "Size gradation control of anisotropic meshes", Finite Elements in Analysis and
  * Design 46 (2010), with the exponent 1/8. An isotropic size grows by rate |e|.
  * @param axes of the metric at the first end
@@ -127,9 +127,9 @@ TAUTLINE_KERNEL_EXPORT MetricTensor limited(const MetricTensor& m, const MetricL
 TAUTLINE_KERNEL_EXPORT MetricTensor grownMetric(const MetricAxes& axes, const Vec3& e, double rate);
 
 /**
- * @brief A tensor of a planar mesh or surface: what it has in the plane with this unit normal,
- * and along the normal the smaller eigenvalue of that, which is the larger size. So the normal
- * changes no smallest size, no ratio of sizes, and lengthens no edge.
+ * @brief A tensor of a planar mesh or surface: the in-plane part for this unit normal and, along
+ * the normal, its smaller eigenvalue (the larger size). The normal direction thus changes neither
+ * the smallest size nor the size ratio, and lengthens no edge.
  */
 TAUTLINE_KERNEL_EXPORT MetricTensor flattened(const MetricTensor& m, const Vec3& normal);
 }

@@ -11,11 +11,11 @@ namespace tautline
 {
 namespace
 {
-/// Directions in which the neighbors extend less than this, relative to the longest, do not count.
+/// Directions in which the neighbors extend less than this, relative to the longest, are ignored.
 constexpr double flattestSpread = 1e-6;
 constexpr double rankTolerance = 1e-8;
 
-/// Coordinates x . rows[k] in which the point and its neighbors extend alike.
+/// Coordinates x . rows[k] in which the point and its neighbors extend equally far.
 std::vector<Vec3> evenDirections(int dimension, const std::vector<Vec3>& offsets)
 {
   const double share = 1.0 / (static_cast<double>(offsets.size()) + 1.0);
@@ -110,8 +110,8 @@ QuadraticFit fitQuadratic(
     right[i] = weight * values[i];
   }
 
-  // Where several second derivatives fit equally well, the smallest ones are taken: in one layer of
-  // cells, those across it are 0. The gradient follows from them.
+  // If several second derivatives fit equally well, the smallest are taken: in a single layer of
+  // cells, the transverse ones are 0. The gradient follows from them.
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> first(linear);
   const Eigen::MatrixXd left = first.householderQ().adjoint() * quadratic;
   const Eigen::VectorXd rotated = first.householderQ().adjoint() * right;

@@ -17,35 +17,35 @@ struct QuadraticFit
 {
   Vec3 gradient = { 0, 0, 0 };
   MetricTensor hessian = {};
-  int rank = -1;           ///< how many coefficients the neighbors determine
-  bool determined = false; ///< whether that is all of them
+  int rank = -1;           ///< the number of coefficients that the neighbors determine
+  bool determined = false; ///< whether all are determined
 };
 
-/// The coefficients of a quadratic that has a given value at its center.
+/// The number of coefficients of a quadratic with a given value at its center.
 constexpr int unknownsOf(int dimension)
 {
   return dimension + dimension * (dimension + 1) / 2;
 }
 
 /**
- * @brief Fits a quadratic, exact for quadratics where it is determined; else the second derivatives
- * are as small as possible. It does not depend on how the neighbors are stretched: linear maps of
- * them give the mapped derivatives.
+ * @brief Fits a quadratic, exact for quadratics if they are determined; otherwise the second
+ * derivatives are as small as possible. The fit is invariant to stretching: linear maps of the
+ * neighbors give the mapped derivatives.
  * @param dimension 2, of x and y, or 3
  * @param offsets of the neighbors from the center; with dimension 2 their third coordinate is 0
- * @param values per neighbor, its value minus that at the center
+ * @param values per neighbor: its value minus the value at the center
  */
 QuadraticFit fitQuadratic(
   int dimension, const std::vector<Vec3>& offsets, const std::vector<double>& values);
 
-/// Rings of neighbors are added until a fit is determined by more points than it has coefficients,
-/// at most so many.
+/// Rings of neighbors are added until a fit is determined by more points than it has coefficients;
+/// at most this many.
 constexpr int MaximumRings = 3;
 
 /**
  * @brief A fit to the points around a point, with as many rings of them as it needs.
  * @param found the first ring
- * @param enough how many points suffice
+ * @param enough the sufficient number of points
  * @param grow adds the next ring to points
  * @param fit the fit to some points
  */
@@ -68,10 +68,10 @@ QuadraticFit fitRings(
   return best;
 }
 
-/// The same around a point of a mesh, of a field, in the tangent plane of surfaces.
+/// The same for a field around a point of a mesh; on surfaces, in the tangent plane.
 QuadraticFit fitField(const AdaptationMesh& mesh, Index point, const std::vector<double>& values);
 
-/// A tensor given in coordinates x . axes[i], in those of x.
+/// Converts a tensor from the coordinates x . axes[i] to the coordinates x.
 MetricTensor outOf(const MetricTensor& m, const std::array<Vec3, 3>& axes);
 }
 #endif

@@ -13,7 +13,7 @@ namespace
 {
 constexpr Index CellsPerChunk = 256;
 
-/// A cell of the source, and what a cell of the target has of it.
+/// A source cell and its share of a target cell.
 struct CellShare
 {
   Index cell;
@@ -21,7 +21,7 @@ struct CellShare
   Vec3 moment;
 };
 
-/// The integral of the place over what two simplices share, scaled.
+/// The integral of the position over the intersection of two simplices, scaled.
 template <int N>
 Vec3 momentOf(const TransferView<N>& view, const TransferMesh& source, const TransferOverlap& each)
 {
@@ -157,7 +157,7 @@ CellTransfer::CellTransfer(const TransferMesh& target, const TransferMesh& sourc
   {
     return;
   }
-  // Each cell once per point: `last` is the one that a point was counted for.
+  // Each cell once per point: `last` is the last cell counted for a point.
   const auto forEachUse = [&](const auto& use)
   {
     std::vector<Index> last(source.points().size(), -1);
@@ -208,7 +208,7 @@ void CellTransfer::reconstruct(
       this->Around.begin() + this->AroundStarts[p + 1]);
   }
   unique(neighbors);
-  // Least squares, with weights that are independent of the unit of length.
+  // Least squares, with weights independent of the unit of length.
   Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
   Eigen::Vector3d side = Eigen::Vector3d::Zero();
   low = high = field[cell];

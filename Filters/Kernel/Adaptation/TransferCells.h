@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TransferCells.h
- * @brief Values of cells on another mesh, as means over what a cell overlaps.
- * Internal: not installed.
+ * @brief Transfers cell values to another mesh as means over the overlapped cells. Internal: not
+ * installed.
  */
 #ifndef tautline_TransferCells_h
 #define tautline_TransferCells_h
@@ -14,16 +14,16 @@
 
 namespace tautline
 {
-/// What each cell of the target has of cells of the source.
+/// The shares of source cells in each target cell.
 struct CellShares
 {
   std::vector<Index> starts; ///< of the shares of each cell of the target, and the end
   std::vector<Index> cells;  ///< of the source, in increasing order
   std::vector<double> parts; ///< the sum over a cell of the target is 1
-  std::vector<Vec3> centers; ///< of what is in common; empty unless asked for
+  std::vector<Vec3> centers; ///< of the intersections; empty unless requested
 };
 
-/// @param centers whether they are needed
+/// @param centers whether centers are needed
 CellShares cellShares(const TransferMesh& target, const TransferMesh& source,
   const TransferOverlaps& overlaps, bool centers, int threads);
 
@@ -37,8 +37,8 @@ std::vector<Index> largestShares(const CellShares& shares);
 class CellTransfer
 {
 public:
-  /// @param shares with centers, where fields are linear
-  /// @param others per cell of the target: the cell of the source whose value it has if it has no
+  /// @param shares with centers if fields are linear
+  /// @param others per cell of the target: the source cell that provides the value if it has no
   /// share
   CellTransfer(const TransferMesh& target, const TransferMesh& source, const CellShares& shares,
     const std::vector<Index>& others, int threads);

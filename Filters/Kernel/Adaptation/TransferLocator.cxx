@@ -20,7 +20,7 @@ std::vector<BoundingBox> boxesOfSimplices(const TransferMesh& mesh)
     boxes.push_back(boxOf(mesh, s));
     if (mesh.dimension() == 2)
     {
-      boxes.back().widen(0.25 * longestEdge(mesh, s)); // for surfaces that are next to it
+      boxes.back().widen(0.25 * longestEdge(mesh, s)); // for nearby surfaces
     }
   }
   return boxes;
@@ -75,7 +75,7 @@ std::array<double, 4> weightsOf(const Coordinates& coordinates)
   return weights;
 }
 
-/// A place whose distances from the simplices are finite.
+/// Limits a position so that its distances from the simplices are finite.
 Vec3 limited(Vec3 x)
 {
   constexpr double farthest = TransferMesh::FarthestCoordinate;
@@ -123,7 +123,7 @@ double TransferLocator::squaredDistance(Index simplex, const Vec3& x, Vec3& plac
   bool outside = false;
   for (int k = 0; k < 4; ++k)
   {
-    if (inside[k] < 0.0) // the nearest place is on a face that x is beyond
+    if (inside[k] < 0.0) // the nearest position is on a face that x is beyond
     {
       const Vec3 on =
         closestOnTriangle({ corners[(k + 1) % 4], corners[(k + 2) % 4], corners[(k + 3) % 4] }, x);

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TransferLocator.h
- * @brief The place of a mesh that is nearest to a point.
- * Internal: not installed.
+ * @brief The position in a mesh nearest to a point. Internal: not installed.
  */
 #ifndef tautline_TransferLocator_h
 #define tautline_TransferLocator_h
@@ -16,25 +15,25 @@
 
 namespace tautline
 {
-/// A place of a mesh.
+/// A position in a mesh.
 struct TransferPlace
 {
   Index simplex = -1;
   std::array<double, 4> weights = { 0, 0, 0, 0 }; ///< of its corners, at least 0, their sum is 1
 };
 
-/// Finds places in the simplices of a mesh, and its points. The mesh must have a simplex and
+/// Locates positions in the simplices of a mesh, and its points. The mesh must have a simplex and
 /// outlive the locator.
 class TransferLocator
 {
 public:
   explicit TransferLocator(const TransferMesh& mesh);
 
-  /// Of the simplices.
+  /// The boxes of the simplices.
   const BoxTree& tree() const { return this->Tree; }
-  /// The place nearest to x: x itself, where the mesh has it.
+  /// The position nearest to x: x itself if it is inside the mesh.
   TransferPlace nearest(const Vec3& x) const;
-  /// The point nearest to x, of a simplex.
+  /// The point of a simplex nearest to x.
   Index nearestPoint(const Vec3& x) const;
 
 private:

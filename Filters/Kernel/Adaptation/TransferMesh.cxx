@@ -11,7 +11,7 @@ namespace tautline
 {
 namespace
 {
-/// Simplices with less than this part of the size that their longest edge allows have none.
+/// Simplices below this fraction of the largest size for their longest edge are degenerate.
 constexpr double FlatSimplex = 1e-14;
 
 int dimensionOfType(int type)
@@ -31,7 +31,7 @@ double sizeOfSimplex(const std::vector<Vec3>& points, const TransferMesh::Simple
   return s[3] < 0 ? 0.5 * norm(n) : std::abs(dot(n, points[s[3]] - a)) / 6.0;
 }
 
-/// The triangles of a polygon in space, by the places of its corners in the list.
+/// The triangles of a polygon in space, as positions of its corners in the list.
 std::vector<std::array<Index, 3>> trianglesOf(const std::vector<Vec3>& corners)
 {
   Vec3 normal = { 0, 0, 0 };
@@ -46,7 +46,7 @@ std::vector<std::array<Index, 3>> trianglesOf(const std::vector<Vec3>& corners)
   const auto largest = std::max_element(
     normal.begin(), normal.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
   const auto axis = static_cast<std::size_t>(largest - normal.begin());
-  // Along the axis nearest to the normal, counter-clockwise.
+  // Project along the axis nearest to the normal, counterclockwise.
   std::size_t first = (axis + 1) % 3, second = (axis + 2) % 3;
   if (normal[axis] < 0.0)
   {
@@ -209,7 +209,7 @@ void TransferMesh::divide(const MeshView& view, Index cell, Index firstPoint)
     add(nodes[0], nodes[1], nodes[2], nodes[3]);
     return;
   }
-  // Pyramids over the triangles of the faces that do not have the lowest point.
+  // Build tetrahedra from the lowest point to the triangles of the faces that do not contain it.
   const Index apex = *std::min_element(nodes, nodes + t.nodes);
   for (int f = 0; f < t.faces; ++f)
   {

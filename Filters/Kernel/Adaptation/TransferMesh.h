@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TransferMesh.h
- * @brief Meshes divided into simplices, between which fields are transferred.
+ * @brief Meshes divided into simplices, for field transfer.
  *
  *     tautline::TransferMesh mesh(tautline::elementDimension(view));
  *     mesh.add(view, nullptr);
@@ -16,19 +16,19 @@
 
 namespace tautline
 {
-/// 3 if the mesh has a cell of a volume, otherwise 2 if it has one of a surface, otherwise 0.
+/// 3 if the mesh has a volume cell, otherwise 2 if it has a surface cell, otherwise 0.
 TAUTLINE_KERNEL_EXPORT int elementDimension(const MeshView& view);
 
 /**
  * @class tautline::TransferMesh
- * @brief The elements of one or several meshes, in simplices: triangles or tetrahedra.
+ * @brief The elements of one or several meshes, divided into triangles or tetrahedra.
  *
  * An element is divided from its point with the lowest number, and so are its faces, so that
- * neighbors match: a quadrilateral into two triangles, a hexahedron into six tetrahedra.
- * Polygons are divided by a constrained Delaunay triangulation. The division is exact for cells
- * with straight edges; of cells of higher order the corners count. A simplex has the absolute value
- * of its area or volume; those without any, relative to their edges, are left out, and so are those
- * with a coordinate beyond FarthestCoordinate.
+ * neighbors match: a quadrilateral into two triangles, a hexahedron into six tetrahedra. Polygons
+ * are divided by a constrained Delaunay triangulation. The division is exact for cells with
+ * straight edges; only the corners of higher-order cells are used. Simplex sizes are absolute
+ * values; simplices that are degenerate relative to their edges or have a coordinate beyond
+ * FarthestCoordinate are left out.
  */
 class TAUTLINE_KERNEL_EXPORT TransferMesh
 {
@@ -40,8 +40,9 @@ public:
   explicit TransferMesh(int dimension);
 
   /**
-   * @brief Adds the points and cells of a mesh, which get the numbers after those before.
-   * @param skip one flag per cell, nonzero for cells that are no elements, as ghosts; may be null
+   * @brief Adds the points and cells of a mesh, numbered after the existing ones.
+   * @param skip one flag per cell, nonzero for cells that are not elements, such as ghosts; may be
+   *   null
    *
    * Throws Error for an element with a point that is not finite or not in the mesh.
    */
@@ -60,16 +61,16 @@ public:
   Index numberOfPoints() const { return static_cast<Index>(this->Points.size()); }
   Index numberOfCells() const { return static_cast<Index>(this->Starts.size()) - 1; }
   Index numberOfSimplices() const { return static_cast<Index>(this->Simplices.size()); }
-  /// The simplices of cell i are starts()[i] .. starts()[i + 1] - 1; none if it is no element.
+  /// The simplices of cell i are starts()[i] .. starts()[i + 1] - 1; none if it is not an element.
   const std::vector<Index>& starts() const { return this->Starts; }
   /// The area or volume of a cell.
   double sizeOfCell(Index cell) const;
-  /// The center of mass of a cell; the mean of its points if it is no element or has no size.
+  /// The center of mass of a cell; the mean of its points if it is not an element or has no size.
   const Vec3& center(Index cell) const { return this->Centers[cell]; }
-  /// The area or volume of all.
+  /// The total area or volume.
   double size() const;
 
-  /// Gives points and centers the coordinates along two unit vectors in a plane, and z = 0.
+  /// Converts points and centers to coordinates along two unit vectors in a plane, with z = 0.
   void flatten(const Vec3& origin, const Vec3& first, const Vec3& second);
 
 private:

@@ -10,13 +10,13 @@ namespace tautline
 namespace
 {
 constexpr Index SimplicesPerChunk = 128;
-/// Overlaps below this part of the smaller simplex are rounding.
+/// Overlaps below this fraction of the smaller simplex are rounding errors.
 constexpr double RoundingOverlap = 1e-13;
-/// Simplices covered to this part are covered, and are scaled to the whole: of surfaces those whose
-/// projections differ from them.
+/// Simplices covered by at least this fraction count as covered and are scaled to the whole. On
+/// surfaces, the fraction allows for projection.
 constexpr double CoveredPart = 1.0 - 1e-9, CoveredPartOfSurface = 0.7;
-/// The smallest cosine of the angle of two normals, and how far surfaces are apart, over the sum of
-/// their longest edges.
+/// The smallest cosine of the angle of two normals, and the largest distance of surfaces, relative
+/// to the sum of their longest edges.
 constexpr double SteepestCosine = 0.5, FarthestHeight = 0.25;
 
 Vec3 normalOf(const TransferMesh& mesh, Index simplex)
@@ -27,7 +27,7 @@ Vec3 normalOf(const TransferMesh& mesh, Index simplex)
   return (1.0 / norm(n)) * n;
 }
 
-/// A simplex of the source that one of the target overlaps; the sides only of surfaces.
+/// A source simplex that a target simplex overlaps; sides are only for surfaces.
 struct FoundOverlap
 {
   TransferOverlap overlap;
@@ -86,14 +86,14 @@ void overlapsOf(const TransferMesh& target, Index simplex, const BoxTree& tree,
     { return a.overlap.simplex < b.overlap.simplex; });
 }
 
-/// What the simplices of a chunk overlap.
+/// The overlaps of the simplices in a chunk.
 struct OverlapChunk
 {
   std::vector<FoundOverlap> found;
   std::vector<Index> counts;
 };
 
-/// Whether most of what is seen is seen from behind.
+/// Whether most overlaps are seen from behind.
 bool mostlyBehind(const std::vector<OverlapChunk>& chunks)
 {
   double front = 0.0, behind = 0.0;
@@ -107,7 +107,7 @@ bool mostlyBehind(const std::vector<OverlapChunk>& chunks)
   return behind > front;
 }
 
-/// Lists the overlaps, of surfaces those on the side of most of them.
+/// Lists the overlaps; on surfaces, only on the side of the majority.
 void collectOverlaps(const std::vector<OverlapChunk>& chunks, TransferOverlaps& result)
 {
   const bool behind = result.space == TransferSpace::Surface && mostlyBehind(chunks);

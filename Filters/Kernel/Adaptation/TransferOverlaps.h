@@ -16,7 +16,7 @@
 
 namespace tautline
 {
-/// Where two meshes are, relative to each other.
+/// The common space of two meshes.
 enum class TransferSpace
 {
   Plane,   ///< triangles in the plane of x and y
@@ -24,7 +24,7 @@ enum class TransferSpace
   Volume
 };
 
-/// The part of a simplex of the source that a simplex of the target has.
+/// The overlap of a source simplex with a target simplex.
 struct TransferOverlap
 {
   Index simplex; ///< of the source
@@ -32,8 +32,8 @@ struct TransferOverlap
 };
 
 /**
- * @brief A simplex of the target, seen along its normal if it is of a surface, and what it shares
- * with simplices of the source.
+ * @brief A target simplex and its intersections with source simplices; on surfaces, in projection
+ * along its normal.
  * @tparam N 3 or 4 corners
  */
 template <int N>
@@ -42,11 +42,11 @@ class TransferView
 public:
   TransferView(const TransferMesh& target, Index simplex, TransferSpace space);
 
-  /// What it shares with a simplex of the source.
+  /// The intersection with a source simplex.
   SimplexOverlap<N> with(const TransferMesh& source, Index simplex) const;
   /// 1, or -1 if a simplex of a surface is seen from behind, or 0 if it is too steep.
   int side(const TransferMesh& source, Index simplex) const;
-  /// How far a simplex of a surface is along the normal, at some barycentric coordinates of it.
+  /// The height of a surface simplex along the normal at the given barycentric coordinates.
   double heightOf(
     const TransferMesh& source, Index simplex, const std::array<double, N>& coordinates) const;
 
@@ -62,13 +62,13 @@ struct TransferOverlaps
 {
   TransferSpace space = TransferSpace::Volume;
   std::vector<Index> starts; ///< of the overlaps of each simplex of the target, and the end
-  /// In increasing order of the simplices of the source. The sizes of each simplex of the source
-  /// are scaled so that they sum to its own where the target covers it: by `scales`.
+  /// In increasing order of the source simplices. If the target covers a source simplex, its
+  /// overlap sizes are scaled by `scales` so that they sum to its size.
   std::vector<TransferOverlap> overlaps;
   std::vector<double> scales;        ///< per simplex of the source
   std::vector<double> coveredTarget; ///< per simplex: the sum of the sizes, scaled
   std::vector<double> coveredSource; ///< per simplex, scaled
-  /// Whether a simplex is covered: up to rounding, of a surface up to its curvature.
+  /// Whether a simplex is covered, up to rounding; on surfaces, up to the curvature.
   std::vector<unsigned char> sourceIsCovered, targetIsCovered;
 };
 
@@ -79,11 +79,11 @@ BoundingBox boxOf(const TransferMesh& mesh, Index simplex);
 
 /**
  * @brief All overlaps of two meshes of the same dimension; in the plane both have z = 0. The result
- * does not depend on the threads.
+ * does not depend on the number of threads.
  *
- * On surfaces a triangle of the source overlaps one of the target if their normals differ by at
- * most 60 degrees, it is on the side of most overlaps (the two sides of a plate do not mix), and it
- * is not farther away along the normal than a quarter of their longest edges.
+ * On surfaces, a source triangle overlaps a target triangle if their normals differ by at most 60
+ * degrees, it is on the side of most overlaps (so that the two sides of a plate are not mixed), and
+ * its distance along the normal is at most a quarter of their longest edges.
  */
 TransferOverlaps findOverlaps(const TransferMesh& target, const BoxTree& tree,
   const TransferMesh& source, TransferSpace space, int threads);

@@ -12,15 +12,15 @@ namespace tautline
 namespace
 {
 constexpr Index SimplicesPerProjection = 64, RowsPerChunk = 1024;
-/// Points with less than this part of their simplices in common have no value.
+/// Points with less than this fraction of their simplices covered have no value.
 constexpr double LeastCommon = 1e-10;
 /// The residual of the projection, relative to its right side. The mass matrix is well conditioned.
 constexpr double ProjectionResidual = 1e-14;
 constexpr int ProjectionIterations = 500;
-/// How often what the limiter has left of the fluxes is limited again.
+/// The number of passes in which the remaining fluxes are limited again.
 constexpr int FluxPasses = 3;
 
-/// Integrals of products of barycentric coordinates of two simplices over what they share.
+/// Integrals of products of barycentric coordinates of two simplices over their intersection.
 template <int N>
 struct SharedMoments
 {
@@ -30,8 +30,8 @@ struct SharedMoments
   template <class Target, class Source>
   void add(const Target& inTarget, const Source& inSource, double size)
   {
-    // Of linear functions f and g: size / (N (N + 1)) (sum f sum g + sum f g) over the corners; the
-    // last row has the sums.
+    // For linear functions f and g: size / (N (N + 1)) (sum f sum g + sum f g) over the corners;
+    // the last row has the sums.
     double t[N + 1][N] = {}, s[N + 1][N] = {};
     for (int i = 0; i < N; ++i)
     {
@@ -104,7 +104,7 @@ void PointProjection::integrate(Index simplex)
     {
       for (int j = 0; j < N; ++j)
       {
-        // Symmetric bit by bit, so that fluxes have no sum.
+        // Bitwise symmetric, so that fluxes cancel exactly.
         masses[N * i + j] += scale * (i <= j ? moments.masses[i][j] : moments.masses[j][i]);
       }
     }
@@ -126,7 +126,7 @@ void PointProjection::integrate(Index simplex)
 }
 
 //------------------------------------------------------------------------------
-/// Makes the rows of the mass matrix.
+/// Assembles the rows of the mass matrix.
 void PointProjection::assemble()
 {
   const Index points = this->Target.numberOfPoints();
@@ -182,7 +182,7 @@ void PointProjection::assemble()
         for (int k = 0; k < n; ++k)
         {
           const double mass = this->Masses[n * this->Uses[u] + k];
-          if (mass > 0.0) // what belongs to a point without a value stays here
+          if (mass > 0.0) // the share of a point without a value stays here
           {
             all.emplace_back(this->Common[s[k]] > 0.0 ? s[k] : p, mass);
           }

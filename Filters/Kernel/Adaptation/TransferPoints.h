@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TransferPoints.h
- * @brief Values of points on another mesh, by a limited L2 projection.
- * Internal: not installed.
+ * @brief Transfers point values to another mesh by a limited L2 projection. Internal: not
+ * installed.
  */
 #ifndef tautline_TransferPoints_h
 #define tautline_TransferPoints_h
@@ -17,7 +17,8 @@ namespace tautline
 /**
  * @class tautline::PointProjection
  * @brief Projects several components at once; see FieldTransfer.h. Both sides are integrated over
- * what the meshes have in common, so that constants are exact where it is a part of a simplex.
+ * the intersection of the meshes, so that constants are exact even where it is only part of a
+ * simplex.
  */
 class PointProjection
 {
@@ -26,10 +27,10 @@ public:
   PointProjection(const TransferMesh& target, const TransferMesh& source,
     const TransferOverlaps& overlaps, const std::vector<std::vector<double>>& fields, int threads);
 
-  /// What each point of the target has of the meshes in common; 0: it has no value.
+  /// The share of the intersection at each target point; 0: the point has no value.
   const std::vector<double>& common() const { return this->Common; }
 
-  /// The values of a component; 0 where common() is.
+  /// The values of a component; 0 where common() is 0.
   BoundedValues apply(std::size_t component) const;
 
 private:

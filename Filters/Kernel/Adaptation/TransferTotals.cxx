@@ -8,7 +8,7 @@ namespace tautline
 {
 namespace
 {
-/// Differences of the total below this part of the magnitude are rounding.
+/// Differences of the total below this fraction of the magnitude are rounding errors.
 constexpr double RoundingTotal = 1e-13;
 
 /// Neumaier's sum.
@@ -72,7 +72,7 @@ void takeTotal(const std::vector<double>& weights, const std::vector<unsigned ch
       }
     }
   };
-  constexpr int rounds = 3; // the later ones for the rounding of the first
+  constexpr int rounds = 3; // the later rounds correct rounding in the first
   for (int round = 0; round < rounds; ++round)
   {
     const double missing = wanted - totalOf(weights, field.values).total;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TransferTotals.h
- * @brief Totals of fields, and values that are changed so that they have a given one.
- * Internal: not installed.
+ * @brief Field totals, and adjustment of values to a given total. Internal: not installed.
  */
 #ifndef tautline_TransferTotals_h
 #define tautline_TransferTotals_h
@@ -20,20 +19,21 @@ struct WeightedTotal
 };
 WeightedTotal totalOf(const std::vector<double>& weights, const std::vector<double>& values);
 
-/// Values of one component on the target, and where they may be.
+/// Values of one component on the target and their bounds.
 struct BoundedValues
 {
   std::vector<double> values, low, high;
-  /// How far the values are outside of their bounds at most.
+  /// The largest distance of a value from its bounds.
   double excess(const std::vector<double>& weights) const;
 };
 
 /**
- * @brief Changes values so that their total is the one that is wanted: first in proportion to what
- * the bounds leave, then, where that does not suffice, all by the same amount, beyond the bounds.
- * @param weights the share of the area or volume of each value; those without any keep theirs
+ * @brief Changes values to reach the target total: first in proportion to the room within the
+ * bounds and, if this does not suffice, all by the same amount beyond the bounds.
+ * @param weights the share of the area or volume of each value; values without a share stay
+ *   unchanged
  * @param beside nonzero for the values that change; if there are none, all do
- * @param magnitude of the source; differences that are rounding of it do not leave the bounds
+ * @param magnitude of the source; differences within its rounding do not exceed the bounds
  */
 void takeTotal(const std::vector<double>& weights, const std::vector<unsigned char>& beside,
   double wanted, double magnitude, BoundedValues& values);

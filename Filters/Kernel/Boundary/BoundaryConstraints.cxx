@@ -16,8 +16,8 @@ void NeedOfWholeMesh::refuse() const
   std::string first = this->what;
   first[0] = static_cast<char>(std::toupper(first[0]));
   throw Error(first +
-    " need the whole mesh on one process: gather it, in ParaView by Aggregate Dataset, with "
-    "Reproducible Order off; or " +
+    " need the whole mesh on one process: gather it (in ParaView, with Aggregate Dataset) and "
+    "turn Reproducible Order off; or " +
     this->remedy + ".");
 }
 }

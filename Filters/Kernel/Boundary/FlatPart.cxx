@@ -8,8 +8,8 @@ namespace tautline
 {
 namespace
 {
-/// How far a flat part may be from its plane, or a straight one from its line: of its size, and of
-/// the surface tolerance.
+/// The largest distance of a flat part from its plane, or of a straight part from its line, as a
+/// fraction of its size and of the surface tolerance.
 constexpr double ofSize = 1e-6, ofTolerance = 1e-3;
 
 /// Calls visit(x) with the corners and control points of all pieces of a part.
@@ -43,7 +43,7 @@ bool isFlatPart(const SurfacePart& part, double surfaceTolerance, Vec3& directio
     const Vec3 d = directionOf(piece);
     largest = dot(d, d) > dot(largest, largest) ? d : largest;
   }
-  // Their sum has less of the rounding of coordinates than one, whatever the order of the corners.
+  // The sum is less affected by coordinate rounding than one term, for any order of the corners.
   Vec3 origin = { 0, 0, 0 };
   direction = { 0, 0, 0 };
   for (const auto& piece : part.pieces)

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file FlatPart.h
- * @brief Which patches are flat, and which curves straight.
- * Internal: not installed.
+ * @brief Detects flat patches and straight curves. Internal: not installed.
  */
 #ifndef tautline_FlatPart_h
 #define tautline_FlatPart_h
@@ -14,7 +13,7 @@ namespace tautline
 /**
  * @brief Whether a patch is flat, or a curve straight, to a millionth of its size and, if that is
  * above 0, to a thousandth of the surface tolerance.
- * @param direction gets the unit normal, or direction
+ * @param direction receives the unit normal or direction
  */
 bool isFlatPart(const SurfacePart& part, double surfaceTolerance, Vec3& direction);
 }

@@ -17,31 +17,34 @@ namespace tautline
 {
 namespace
 {
-/// Distances from curves and corners up to which a mesh may have them, as fractions of the shortest
-/// edge at a point. Points are at least as near to curves as most points of the boundary are to the
-/// geometry, times `timesOffset`: what is farther belongs to a neighboring row of points.
+/// The largest distances of mesh points from matching curves and corners, as fractions of the
+/// shortest edge at a point. The limit grows with the offset of most boundary points from the
+/// geometry, times `timesOffset`; points that are farther away belong to a neighboring row of
+/// points.
 constexpr double leastDistance = 0.02, largestDistance = 0.15;
 constexpr double timesOffset = 3;
-/// The quantile of the offsets of the points from the geometry that stands for most of them.
+/// The quantile of the offsets of the points from the geometry that represents most of them.
 constexpr double mostPoints = 0.9;
-/// The same for sharp edges and corners of the mesh, of which there is no doubt.
+/// The same for sharp edges and corners of the mesh, which are unambiguous.
 constexpr double largestOfSharp = 0.5;
 /// A point within a curve of the mesh is a corner if it is nearer to one than this.
 constexpr double cornerWithinCurve = 0.05;
 /// Cosine of the angle between an edge and the curve that it follows: 30 degrees.
 constexpr double along = 0.866;
-/// A curve is one of the mesh if the mesh has at least this part of its length.
+/// A curve is matched if mesh edges cover at least this fraction of its length.
 constexpr double leastShare = 0.5;
-/// A curve with a free end that is shorter than so many edges of the mesh is noise.
+/// A curve with a free end that is shorter than this many mesh edges is noise.
 constexpr double shortestCurve = 3;
-/// A patch (curve) of the geometry belongs to one of the mesh if it is nearest to this part of it.
+/// A patch (curve) of the geometry belongs to one of the mesh if it is nearest to at least this
+/// fraction of it.
 constexpr double leastVotes = 0.1;
-/// Half of the points may be so far from the geometry, of the diagonal of the mesh.
+/// The largest median distance of the points from the geometry, relative to the diagonal of the
+/// mesh.
 constexpr double farthest = 0.5;
 
 using Edge = std::array<Index, 2>;
 
-/// The features of a geometry; of a planar mesh, of an outline.
+/// The features of a geometry; for a planar mesh, of an outline.
 Features featuresOf(const Mesh& mesh, const Mesh& geometry, double angle)
 {
   const bool planar = mesh.dimension() == Dimension::Planar;
@@ -92,7 +95,8 @@ public:
   }
 
 private:
-  /// A curve that an edge follows, or -1, and how far it is at the middle, of the length.
+  /// The curve that an edge follows, or -1, and its distance from the middle, relative to the
+  /// length.
   struct Following
   {
     int curve;
@@ -262,10 +266,10 @@ void Matcher::measure()
   this->Offset = quantile(mostPoints);
   if (quantile(0.5) > farthest * norm(high - low))
   {
-    throw Error("The geometry is elsewhere: half of the boundary points of the mesh are farther "
-                "than " +
+    throw Error("The geometry and the mesh are at different locations: half of the boundary "
+                "points of the mesh are farther than " +
       std::to_string(static_cast<int>(100 * farthest)) +
-      " % of the diagonal from it. Check its units and its place.");
+      " % of the diagonal from it. Check its units and position.");
   }
 }
 
@@ -299,7 +303,7 @@ bool Matcher::isNoise(int curve, double edgeLength) const
 }
 
 //------------------------------------------------------------------------------
-/// Leaves out the edges on curves that are noise or of which the mesh has too little.
+/// Leaves out the edges on curves that are noise or that the mesh covers too little.
 void Matcher::leaveOut(std::vector<int>& curveOf, const std::vector<BoundaryEdge>& edges) const
 {
   const auto curves = static_cast<std::size_t>(this->Theirs.curves);
@@ -326,7 +330,7 @@ void Matcher::leaveOut(std::vector<int>& curveOf, const std::vector<BoundaryEdge
 
 //------------------------------------------------------------------------------
 /// The curve of each edge, or -1. A point has at most two edges of a curve: first the sharp ones,
-/// then the nearest. Others are chords, or in the next row.
+/// then the nearest. The other edges are chords or belong to the next row.
 std::vector<int> Matcher::curvesAlong(const std::vector<BoundaryEdge>& edges) const
 {
   std::vector<Following> following(edges.size(), Following{ -1, 0 });
@@ -424,7 +428,8 @@ void Matcher::matchCorners()
     limits.push_back(limit);
     largest = std::max(largest, limit);
   }
-  // Candidates by their first coordinate: a corner looks at those within the largest limit.
+  // Candidates by their first coordinate: only candidates within the largest limit are tested for a
+  // corner.
   std::vector<std::size_t> order(candidates.size());
   std::iota(order.begin(), order.end(), std::size_t(0));
   const auto first = [&](std::size_t i) { return this->at(candidates[i])[0]; };
@@ -474,7 +479,7 @@ void Matcher::labelMesh()
 }
 
 //------------------------------------------------------------------------------
-/// The patches of the geometry, divided by the curves that the mesh has, too.
+/// The patches of the geometry, divided by the curves that the mesh also has.
 void Matcher::makePatches()
 {
   if (this->Planar)
@@ -500,7 +505,7 @@ void Matcher::makePatches()
 }
 
 //------------------------------------------------------------------------------
-/// Where the facets, or edges, of a patch, or curve, of the mesh are.
+/// The location of the facets (edges) of a patch (curve) of the mesh.
 struct Whereabouts
 {
   std::map<std::int32_t, Index> votes; ///< of parts of the geometry, for the nearest
@@ -518,14 +523,14 @@ struct Whereabouts
       this->interface = this->interface && between;
     }
   }
-  /// Whether the geometry, of the outer surface alone, does not have it.
+  /// Whether the geometry, which covers only the outer surface, lacks this part.
   bool isElsewhere() const
   {
     return this->interface && this->distance > largestOfSharp * this->size;
   }
 };
 
-/// A part of the pieces that have a share of the votes, or the most.
+/// A part made of the pieces with a sufficient share of the votes, or with the most votes.
 SurfacePart electedPart(const Whereabouts& place, const SurfaceModel& geometry, bool curve)
 {
   Index all = 0, most = 0;

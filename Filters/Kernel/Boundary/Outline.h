@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Outline.h
- * @brief The curves and corners of an outline of lines.
- * Internal: not installed.
+ * @brief The curves and corners of an outline made of lines. Internal: not installed.
  */
 #ifndef tautline_Outline_h
 #define tautline_Outline_h
@@ -12,8 +11,8 @@
 namespace tautline
 {
 /**
- * @brief The lines and polylines of a mesh as curves. A point where more or fewer than two lines
- * end, or two of more degrees than the angle meet, is a corner.
+ * @brief The lines and polylines of a mesh as curves. A point is a corner if the number of lines
+ * that end there is not two, or if two lines meet there at more degrees than the angle.
  */
 Features outlineFeatures(const MeshView& view, double angle);
 }

@@ -12,7 +12,7 @@ namespace tautline
 {
 namespace
 {
-/// Control points nearer to those of the flat piece than this fraction of its edges are on it.
+/// Control points closer to the flat piece than this fraction of its edges are considered flat.
 constexpr double flatness = 1e-10;
 /// Cosine of the angle between an edge and the tangent at its end, from which on it is curved.
 constexpr double minCosine = 0.5;
@@ -23,8 +23,8 @@ Vec3 unitOf(const Vec3& v)
   return length > 0 && std::isfinite(length) ? (1 / length) * v : Vec3{ 0, 0, 0 };
 }
 
-/// The control point near `from` of a cubic from there to `to` that leaves in a given direction;
-/// that of a circle's arc if both ends are symmetric.
+/// The control point near `from` of a cubic from there to `to` that leaves in a given direction; on
+/// a circular arc if both ends are symmetric.
 Vec3 controlAt(const Vec3& from, const Vec3& to, const Vec3& direction)
 {
   const Vec3 chord = to - from;
@@ -38,20 +38,21 @@ Vec3 controlAt(const Vec3& from, const Vec3& to, const Vec3& direction)
   return from + (2.0 * length / (3.0 * (1.0 + cosine))) * direction;
 }
 
-/// Facets that differ by less than so many radians are flat together. A part of at least so many of
-/// them is a flat face whose points have its normal, if it is so many times larger than any beside.
+/// Facets whose normals differ by less than this many radians are coplanar. A part of at least this
+/// many facets is a flat face, whose points have its normal, if it is this many times larger than
+/// any adjacent part.
 constexpr double flatAngle = 0.1 / DegreesPerRadian;
 constexpr Index leastFlatFacets = 6;
 constexpr double largerArea = 2;
 
 /// Facets up to this times the radius of curvature are short: the surface is smooth there. Longer
-/// ones, as CAD programs make along cylinders and fillets, do not tell how it bends between them.
+/// ones, as CAD programs make along cylinders and fillets, do not show how it bends between them.
 constexpr double longestFacet = 1.0;
-/// Radians: edges that bend by less are smooth whatever their facets. A cubic leaves these by about
-/// an eighth of this times their length.
+/// Radians: edges that bend by less are smooth for any facet size. A cubic deviates from them by
+/// about an eighth of this angle times their length.
 constexpr double leastBend = 0.1;
 
-/// An edge of a curve with the directions, from the first to the second point, at its ends.
+/// An edge of a curve with the tangents at its ends, directed from the first to the second point.
 struct CurveEdge
 {
   Index a, b; ///< the smaller and the larger point
@@ -66,11 +67,11 @@ struct Neighbors
   std::array<Index, 2> edge;
 };
 
-/// Facets that are flat together.
+/// Coplanar facets.
 struct FlatPart
 {
   Index facets = 0;
-  double area = 0, beside = 0; ///< twice their area, and the largest of a part at their edges
+  double area = 0, beside = 0; ///< twice their area, and the largest such value of an adjacent part
 };
 
 class ModelMaker
@@ -143,12 +144,12 @@ private:
   std::vector<Neighbors> Beside;       ///< pairs of facets of one patch with a common edge
   std::vector<std::array<Index, 2>> StraightEdges; ///< of long facets, sorted, as their points
   std::vector<Index> FlatFace;     ///< per facet: the first facet that is flat with it
-  std::vector<FlatPart> FlatFaces; ///< by such first facets
+  std::vector<FlatPart> FlatFaces; ///< indexed by their first facets
   std::vector<Vec3> Normal;        ///< of the points of the patch that is being made
 };
 
 //------------------------------------------------------------------------------
-/// The tangents of curves: of the circle through a point and its two neighbours.
+/// The tangents of curves: of the circle through a point and its two neighbors.
 void ModelMaker::findDirections()
 {
   std::vector<std::array<Index, 2>> around(this->View.numberOfPoints, { -1, -1 });
@@ -162,7 +163,7 @@ void ModelMaker::findDirections()
   }
   const auto tangent = [&](Index p, Index from, Index to)
   {
-    // From `from` over p to `to`: the weights are those of a circle.
+    // From `from` through p to `to`: the weights are exact for a circle.
     const Vec3 in = this->at(p) - this->at(from), out = this->at(to) - this->at(p);
     return unitOf((1 / dot(in, in)) * in + (1 / dot(out, out)) * out);
   };
@@ -175,7 +176,7 @@ void ModelMaker::findDirections()
                smoothB = this->TheFeatures.kind[e.b] == CurvePoint && other(e.b, e.a) >= 0;
     e.atA = smoothA ? tangent(e.a, other(e.a, e.b), e.b) : chord;
     e.atB = smoothB ? tangent(e.b, e.a, other(e.b, e.a)) : chord;
-    // At the end of a curve, that of the circle which has the other tangent.
+    // At the end of a curve: the tangent of the circle through the other tangent.
     const auto reflected = [&](const Vec3& t) { return 2 * dot(t, chord) * chord - t; };
     e.atA = !smoothA && smoothB ? reflected(e.atB) : e.atA;
     e.atB = !smoothB && smoothA ? reflected(e.atA) : e.atB;
@@ -274,8 +275,8 @@ void ModelMaker::findNeighbors()
 }
 
 //------------------------------------------------------------------------------
-/// The width of a facet from one of its edges on, across an axis: that of a thin triangle of a row
-/// is the length of the row.
+/// The width of a facet measured from one of its edges, perpendicular to an axis: for a thin
+/// triangle in a strip, the length of the strip.
 double ModelMaker::widthOf(Index f, const Vec3& middleOfEdge, const Vec3& axis) const
 {
   const Features::Facet& facet = this->TheFeatures.facets[f];
@@ -285,13 +286,14 @@ double ModelMaker::widthOf(Index f, const Vec3& middleOfEdge, const Vec3& axis) 
     center += (1.0 / facet.size) * this->at(facet.nodes[k]);
   }
   const Vec3 d = center - middleOfEdge;
-  // The centre of a triangle is at a third of its height, of a quadrilateral at half.
+  // The center is at a third of the height of a triangle, and at half the height of a
+  // quadrilateral.
   return (facet.size == 3 ? 3.0 : 2.0) * norm(d - dot(d, axis) * axis);
 }
 
 //------------------------------------------------------------------------------
 /**
- * @brief The edges of facets that are long against the radius of curvature, see longestFacet.
+ * @brief The edges of facets that are long compared with the radius of curvature, see longestFacet.
  *
  * The curvature at an edge between two facets is the angle between their normals over the smaller
  * one of their widths across the axis of the turn: where a large flat face passes into a fillet,
@@ -326,7 +328,7 @@ void ModelMaker::findStraightEdges()
     const bool isLong = this->sizeOf(facet) * curvature[f] > longestFacet;
     for (int k = 0; isLong && k < facet.size; ++k)
     {
-      for (int j = 0; j < k; ++j) // a diagonal, too
+      for (int j = 0; j < k; ++j) // including a diagonal
       {
         const Index p = facet.nodes[k], q = facet.nodes[j];
         this->StraightEdges.push_back({ std::min(p, q), std::max(p, q) });
@@ -337,7 +339,7 @@ void ModelMaker::findStraightEdges()
 }
 
 //------------------------------------------------------------------------------
-/// Joins facets of a patch that have an edge and the normal in common.
+/// Joins facets of a patch that share an edge and the normal.
 void ModelMaker::findFlatFaces()
 {
   const auto& facets = this->TheFeatures.facets;
@@ -368,7 +370,7 @@ void ModelMaker::findFlatFaces()
 
 //------------------------------------------------------------------------------
 /// The normal of the flat face of a patch that a point is on, as where a fillet begins; zero if
-/// there is none, or one beside it is about as large, as on the strips of a cylinder.
+/// there is none, or if an adjacent one is about as large, as on the strips of a cylinder.
 Vec3 ModelMaker::flatNormal(Index point, int patch) const
 {
   Index best = -1;
@@ -394,7 +396,7 @@ Vec3 ModelMaker::flatNormal(Index point, int patch) const
 }
 
 //------------------------------------------------------------------------------
-/// The neighbours of a point within a patch, and theirs.
+/// The neighbors of a point within a patch, and their neighbors.
 std::vector<Index> ModelMaker::ringOf(Index point, int patch) const
 {
   std::vector<Index> ring = { point };
@@ -421,8 +423,9 @@ std::vector<Index> ModelMaker::ringOf(Index point, int patch) const
 
 //------------------------------------------------------------------------------
 /**
- * @brief The normal of the cubic height field through a point that fits the two rings of neighbours
- * best; of the quadric where they are few, as on borders. `first` where they do not determine it.
+ * @brief The normal of the cubic height field through a point that fits the two rings of neighbors
+ * best; of a quadric if there are few neighbors, as on borders; `first` if they do not determine a
+ * quadric.
  */
 Vec3 ModelMaker::fitNormal(Index point, int patch, const Vec3& first) const
 {
@@ -519,19 +522,19 @@ void ModelMaker::findNormals(const std::vector<Index>& facets)
 
 //------------------------------------------------------------------------------
 /**
- * @brief Takes the fitted normal of a point where it agrees clearly better with those of its
- * neighbours than the normal of the facets; on the border of a patch, where that is biased, always,
- * unless the mesh is coarse. Then points on flat faces have the normal of these.
+ * @brief Uses the fitted normal of a point where it agrees clearly better with the neighboring
+ * normals than the facet normal does; on the border of a patch, where the facet normal is biased,
+ * always, unless the mesh is coarse. Afterwards, points on flat faces get the normals of the faces.
  *
- * Along an arc of a circle a chord d is at the same angle to both normals, d . (n + n') = 0; on any
+ * Along a circular arc, a chord d is at the same angle to both normals, d . (n + n') = 0; on any
  * smooth surface this is of the third order of |d|. The facets' normals are exact on spheres and
- * where the mesh is regular, the fitted ones are of higher order elsewhere.
+ * where the mesh is regular, the fitted normals are of higher order elsewhere.
  */
 void ModelMaker::chooseNormals(const std::vector<Index>& facets, const std::vector<Index>& points,
   const std::vector<Vec3>& fitted)
 {
   const int patch = facets.empty() ? -1 : this->TheFeatures.facets[facets[0]].patch;
-  constexpr double clearly = 0.5; // both contain what the curvature changes along the chords
+  constexpr double clearly = 0.5; // both include the change of curvature along the chords
   const auto place = [&](Index p)
   { return std::lower_bound(points.begin(), points.end(), p) - points.begin(); };
   std::vector<double> ofFacets(points.size(), 0.0), ofFit(points.size(), 0.0);
@@ -595,8 +598,8 @@ Vec3 ModelMaker::controlOf(Index from, Index to) const
   const Vec3 n = e ? Vec3{ 0, 0, 0 } : this->Normal[from];
   const Vec3 control = e ? controlAt(a, b, from == e->a ? e->atA : -1.0 * e->atB)
                          : controlAt(a, b, unitOf(chord - dot(chord, n) * n));
-  // Pieces are then nowhere farther, nor apart at their edges: the middle control point, up to 1.5
-  // times as far, has a weight of at most 6/27.
+  // Pieces then deviate nowhere farther and stay joined at their edges: the middle control point,
+  // up to 1.5 times as far, has a weight of at most 6/27.
   const Vec3 off = control - straight;
   const double length = norm(off);
   return length > this->Farthest ? straight + (this->Farthest / length) * off : control;
@@ -712,7 +715,8 @@ void ModelMaker::addTriangle(Index a, Index b, Index c, SurfacePart& part) const
     sum += controls[2 * k] + controls[2 * k + 1];
     corners += p;
   }
-  // Vlachos et al.: half as far again as the mean of the others is from that of the corners.
+  // Vlachos et al.: the middle control point extends the mean of the edge control points by half of
+  // its distance from the mean of the corners.
   controls[6] = (1.0 / 4.0) * sum - (1.0 / 6.0) * corners;
   const bool flat = off <= flatness * longest;
   part.controlsOf.push_back(flat ? -1 : static_cast<std::int32_t>(part.controls.size()));

@@ -15,7 +15,7 @@ namespace
 /// Triangles in a leaf of the tree of boxes, at most.
 constexpr std::int32_t leafSize = 4;
 
-/// From a point to a box; 0 inside.
+/// The squared distance from a point to a box; 0 inside.
 double squareDistance(const Vec3& low, const Vec3& high, const Vec3& x)
 {
   double d2 = 0;
@@ -43,7 +43,7 @@ std::vector<SurfaceFacet> boundaryFacets(const Mesh& mesh)
   const std::vector<char> boundary = boundaryPoints(mesh);
   const int dimension = mesh.dimension() == Dimension::Volume ? 3 : 2;
 
-  // Facets of boundary points only are few; those that occur once are the boundary.
+  // Few facets have boundary points only; the boundary consists of the facets that occur once.
   struct Found
   {
     std::array<Index, MaxFaceNodes> sorted;
@@ -254,7 +254,7 @@ void SurfaceProjection::build(std::int32_t node, std::int32_t first, std::int32_
   box.count = count;
   if (count > leafSize)
   {
-    // Halves by the order of the centres along the longest side.
+    // Split in half by the order of the centers along the longest side.
     int axis = 0;
     for (int c = 1; c < 3; ++c)
     {
@@ -281,8 +281,8 @@ void SurfaceProjection::build(std::int32_t node, std::int32_t first, std::int32_
 Vec3 closestOnTriangle(const std::array<Vec3, 3>& corner, const Vec3& x)
 {
   const auto& [a, b, c] = corner;
-  // Inside, the foot of the perpendicular; else the closest point of an edge.
-  // That of edges, and of needles, is noise of rounding.
+  // Inside: the foot of the perpendicular; outside: the closest point of an edge. For edges and
+  // needles, the foot is only rounding noise.
   constexpr double needle2 = 1e-20; // sine of an angle, squared
   const Vec3 n = cross(b - a, c - a);
   const double n2 = dot(n, n);
@@ -300,7 +300,7 @@ Vec3 closestOnTriangle(const std::array<Vec3, 3>& corner, const Vec3& x)
       return foot;
     }
   }
-  // The closest edge is one that the foot is beyond.
+  // The closest edge is one with the foot on its outer side.
   Vec3 best = a;
   double least = std::numeric_limits<double>::infinity();
   for (int k = 0; k < 3; ++k)
@@ -482,7 +482,7 @@ std::int32_t SurfaceProjection::nearest(const Vec3& x, Vec3& best, std::int32_t 
     }
     for (std::int32_t i = node.first; i < node.first + node.count; ++i)
     {
-      // What is far from the ball around a piece is far from the piece.
+      // A point far from the ball around a piece is far from the piece.
       const Ball& ball = this->Balls[i];
       const Vec3 toCenter = ball.center - x;
       const double square = dot(toCenter, toCenter), radius2 = ball.radius * ball.radius;
@@ -521,7 +521,7 @@ double SurfaceProjection::distanceOf(
   std::int32_t stack[deepest];
   int top = 0;
   double least = std::numeric_limits<double>::infinity(), reach = most;
-  // What is far from the ball around a piece is far from the piece.
+  // A point far from the ball around a piece is far from the piece.
   const auto look = [&](std::int32_t i)
   {
     const Vec3 toCenter = this->Balls[i].center - x;
@@ -552,7 +552,7 @@ double SurfaceProjection::distanceOf(
     }
     if (node.count == 0)
     {
-      // The nearer child is searched first, those that are too far not at all.
+      // The nearer child is searched first; distant children are skipped.
       const Node &left = this->Nodes[node.first], &right = this->Nodes[node.first + 1];
       const double toLeft = squareDistance(left.low, left.high, x),
                    toRight = squareDistance(right.low, right.high, x);

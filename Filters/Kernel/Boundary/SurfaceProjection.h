@@ -12,24 +12,24 @@
 
 namespace tautline
 {
-/// The cells of a surface mesh, or the boundary facets of a volume or planar one.
+/// The cells of a surface mesh, or the boundary facets of a volume or planar mesh.
 TAUTLINE_KERNEL_EXPORT std::vector<SurfaceFacet> surfaceFacets(const Mesh& mesh);
 
-/// The point closest to x of a triangle, or of an edge, which has the last corner twice.
+/// The point closest to x of a triangle, or of an edge, which repeats the last corner.
 TAUTLINE_KERNEL_EXPORT Vec3 closestOnTriangle(const std::array<Vec3, 3>& corner, const Vec3& x);
 
 /**
- * @brief Adds the places at which distances of a triangle, or of an edge, are measured: the corners
- * of the parts into which its edges are divided, and the centre.
+ * @brief Adds the sample points for distances of a triangle or an edge: the corners of the parts
+ * into which its edges are divided, and the center.
  * @param divisions of each edge
  */
 void addSamples(const std::array<Vec3, 3>& corner, int divisions, std::vector<Vec3>& places);
 
 /**
- * @brief Triangles in a bounding volume hierarchy. Quadrilaterals are two triangles, edges are flat
- * ones.
+ * @brief Triangles in a bounding volume hierarchy. Quadrilaterals become two triangles; edges
+ * become degenerate triangles.
  *
- * On a smooth part (see SurfaceModel) the closest point is found from the flat pieces: S maps the
+ * On a smooth part (see SurfaceModel), the closest point is found from the flat pieces: S maps the
  * closest point of a flat piece to the curved one, and y, with S(y) closest to x, is found by a
  * fixed-point iteration, in which the tangential part of x - S(y) is added to y.
  */
@@ -45,13 +45,13 @@ public:
   SurfaceProjection(
     const Mesh& mesh, const std::vector<SurfaceFacet>& facets, const SimplexMesh& simplices);
 
-  /// A patch or curve in the coordinates of `simplices`; null: in those of the model.
+  /// A patch or curve in the coordinates of `simplices`; null: of the model.
   SurfaceProjection(const SurfacePart& part, const SimplexMesh* simplices);
 
-  /// All pieces of a model as facets, for distances: of its patches, or of its curves if it has no
-  /// patch.
+  /// All pieces of a model as facets, for distances: its patches, or its curves if it has no
+  /// patches.
   static SurfaceProjection ofFacets(const SurfaceModel& model, const SimplexMesh* simplices);
-  /// The same of a range of its parts, which nearestPart() tells apart.
+  /// The same for a range of its parts, which nearestPart() distinguishes.
   static SurfaceProjection ofParts(
     const SurfaceModel& model, int begin, int end, const SimplexMesh* simplices);
 
@@ -61,11 +61,12 @@ public:
 
   /// The point of the surface closest to x.
   Vec3 closest(const Vec3& x) const;
-  /// The same with the unit normal there, of a curve the unit tangent; zero if there is none.
+  /// The same with the unit normal there (for a curve, the unit tangent); zero if there is none.
   Vec3 closest(const Vec3& x, Vec3& direction) const;
   /**
-   * @brief The same, found faster among near places.
-   * @param piece where the search begins, -1 or what a place near to x gave; set to the nearest
+   * @brief The same, but faster for a sequence of nearby points.
+   * @param piece where the search begins: -1, or the result for a point near x; set to the nearest
+   *   piece
    */
   Vec3 closest(const Vec3& x, Vec3& direction, std::int32_t& piece) const;
   Vec3 direction(const Vec3& x) const;
@@ -73,13 +74,14 @@ public:
   std::int32_t nearestPart(const Vec3& x) const;
 
   /**
-   * @brief The distance of x from the facets; anything up to `enough` if it is that, and anything
-   * above `most` if it is that. Infinite without facets.
-   * @param piece where the search begins, 0 or what a place near to x gave; set to the nearest
+   * @brief The distance of x from the facets, or any number up to `enough` if it is at most
+   * `enough`, or any number above `most` if it exceeds `most`. Infinite without facets.
+   * @param piece where the search begins: 0, or the result for a point near x; set to the nearest
+   *   piece
    */
   double distanceOf(const Vec3& x, double enough, double most, std::int32_t& piece) const;
 
-  /// The number of a piece, as distanceOf() gives it, in the order of the part or the facets.
+  /// The number of a piece returned by distanceOf(), in the order of the part or the facets.
   std::int32_t source(std::int32_t piece) const { return this->Pieces[piece].source; }
 
   /// The samples of the facets, see addSamples(), each once.
@@ -88,7 +90,7 @@ public:
   double distanceTo(const SurfaceProjection& other, int threads = 1, int divisions = 2) const;
 
 private:
-  /// A triangle, or an edge with the last corner twice.
+  /// A triangle, or an edge that repeats the last corner.
   struct Piece
   {
     std::array<Vec3, 3> corner;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BisectionTree.h
- * @brief Planes that divide places into parts: recursive bisection.
- * Internal: not installed.
+ * @brief Planes that divide locations into parts by recursive bisection. Internal: not installed.
  */
 #ifndef tautline_BisectionTree_h
 #define tautline_BisectionTree_h
@@ -16,8 +15,8 @@ namespace tautline
 {
 /**
  * @class tautline::BisectionTree
- * @brief Planes that divide places into parts of about as many; each is across the direction in
- * which its places extend the farthest.
+ * @brief Planes that divide locations into parts of about equal counts; each is perpendicular to
+ * the direction in which its locations extend farthest.
  * @tparam Frame the directions, 0 to 2. extent(direction, from, to) of places;
  * before(direction, a, b): whether the place a is below b.
  */
@@ -27,8 +26,8 @@ class BisectionTree
 public:
   /**
    * @param places their order changes
-   * @param parts how many
-   * @param moved by this fraction of its places each plane is moved upwards
+   * @param parts the number of parts
+   * @param moved each plane is moved upwards by this fraction of its locations
    */
   BisectionTree(const Frame& frame, std::vector<Vec3>& places, int parts, double moved = 0.0)
     : Directions(frame)

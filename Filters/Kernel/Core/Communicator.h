@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Communicator.h
- * @brief The MPI communicator as the public headers show it.
+ * @brief The MPI communicator in the public headers.
  */
 #ifndef tautline_Communicator_h
 #define tautline_Communicator_h

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CountingSort.h
- * @brief A stable counting sort by several threads.
- * Internal: not installed.
+ * @brief A stable, multithreaded counting sort. Internal: not installed.
  */
 #ifndef tautline_CountingSort_h
 #define tautline_CountingSort_h
@@ -12,8 +11,8 @@
 
 namespace tautline
 {
-/// Into how many parts a loop over so many items is cut whose parts need memory of their own: one
-/// for each thread, unless there are too few items for each.
+/// The number of parts of a loop over this many items if each part needs its own memory: one per
+/// thread, unless there are too few items per thread.
 inline int numberOfParts(Index items, int threads)
 {
   constexpr Index enough = 50000;
@@ -24,8 +23,8 @@ inline int numberOfParts(Index items, int threads)
 
 /**
  * @class tautline::CountingSort
- * @brief Places for the uses of keys by items: those of smaller keys first, of one key in the order
- * of the items, and of one item in its own order. The places do not depend on the threads.
+ * @brief Sorted positions for the uses of keys by items: smaller keys first, then the order of the
+ * items, then the order within an item. The positions do not depend on the number of threads.
  */
 class CountingSort
 {
@@ -66,12 +65,12 @@ public:
     this->place(visit, [](Index, const auto&) {});
   }
 
-  /// The same, and calls fetch(item, placeOf) for an item that is to be placed soon, so that it can
-  /// prefetch the memory; placeOf(key) is near the later place then, and does not advance.
+  /// The same, and also calls fetch(item, placeOf) ahead of time for each item so that it can
+  /// prefetch memory; placeOf(key) is then near the final position and does not advance.
   template <class Visit, class Fetch>
   void place(const Visit& visit, const Fetch& fetch)
   {
-    constexpr Index ahead = 32; // items: as many as are placed while memory is fetched
+    constexpr Index ahead = 32; // items processed during one memory fetch
     this->forEachItem([](std::vector<std::int32_t>&) {},
       [&](Index item, Index end, std::vector<std::int32_t>& next)
       {

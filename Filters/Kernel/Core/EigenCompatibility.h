@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file EigenCompatibility.h
- * @brief What differs between Eigen 3.4 and 5, in one place.
- * Internal: not installed.
+ * @brief The differences between Eigen 3.4 and 5. Internal: not installed.
  */
 #ifndef tautline_EigenCompatibility_h
 #define tautline_EigenCompatibility_h
@@ -16,8 +15,8 @@ namespace tautline
 /**
  * @brief Makes the next solve of Eigen's BiCGSTAB take the same steps every time.
  *
- * Where Eigen 3.4 divides by nearly 0, Eigen 5 goes on from a random vector, of std::rand. There
- * is no other generator that it takes.
+ * Where Eigen 3.4 divides by nearly 0, Eigen 5 restarts from a random vector made by std::rand, and
+ * accepts no other generator.
  */
 inline void restartAlike()
 {

@@ -22,7 +22,7 @@ using Clock = std::chrono::steady_clock;
 
 /// How many signals have arrived. The handler may run on any thread.
 std::atomic<unsigned> Signals{ 0 };
-static_assert(std::atomic<unsigned>::is_always_lock_free, "a handler of signals uses it");
+static_assert(std::atomic<unsigned>::is_always_lock_free, "used by a signal handler");
 
 /// The handler of SIGINT and the scopes that need it.
 struct Handler
@@ -60,7 +60,7 @@ void addHandler()
     struct sigaction own = {};
     own.sa_handler = takeSignal;
     sigemptyset(&own.sa_mask);
-    own.sa_flags = SA_RESTART; // libraries need not expect that their calls of the system end
+    own.sa_flags = SA_RESTART; // libraries may not handle interrupted system calls
     shared.Installed = sigaction(SIGINT, &own, nullptr) == 0;
   }
 }
@@ -75,7 +75,7 @@ void removeHandler()
   }
 }
 
-/// What a thread polls.
+/// The polling state of a thread.
 struct State
 {
   int Scopes = 0, SignalScopes = 0;
@@ -88,11 +88,11 @@ struct State
 
 thread_local State state;
 
-/// Of measurePolls(), for all threads.
+/// The state of measurePolls(), for all threads.
 std::atomic<bool> Measuring{ false };
 std::atomic<double> LongestUnpolled{ 0.0 };
 
-/// Begins to measure at the begin of the outermost scope, and after what is no poll.
+/// Starts measuring at the start of the outermost scope and after intervals that do not count.
 void beginUnpolled()
 {
   if (Measuring.load(std::memory_order_relaxed))
@@ -101,14 +101,14 @@ void beginUnpolled()
   }
 }
 
-/// What is computed until the next poll does not count: it leaves what was interrupted, which
-/// frees memory and can not poll.
+/// Excludes the time until the next poll: unwinding after an interruption frees memory and cannot
+/// poll.
 void leaveUnpolled()
 {
   state.LastPoll = std::numeric_limits<double>::infinity();
 }
 
-/// Takes the time since the last poll.
+/// Records the time since the last poll.
 void endUnpolled()
 {
   if (!Measuring.load(std::memory_order_relaxed))
@@ -236,7 +236,7 @@ void throwIfInterrupted()
 {
   if (callerIsInterrupted() && std::uncaught_exceptions() == 0)
   {
-    throw Interrupted(); // this worker's chunk; the loop ends with what its caller has thrown
+    throw Interrupted(); // ends this worker's chunk; the loop rethrows the exception of its caller
   }
   if (!interruptible() || state.Polling)
   {

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Interruption.h
- * @brief How long computations are ended from outside: by Ctrl-C, on request, by a time limit.
+ * @brief How long computations are ended from outside: by Ctrl-C, by request, or by a time limit.
  *
- * Long computations call throwIfInterrupted() at least every tenth of a second where they can. The
- * loops of Parallel.h, the iterations and factorizations of the linear solvers and everything that
- * waits for a watchdog do. It has an effect on a thread with an InterruptScope or a PollScope,
- * which is a thread that calls the kernel, and on the workers of its loops once it is interrupted;
- * elsewhere it costs two comparisons.
+ * Long computations call throwIfInterrupted() at least every tenth of a second where possible. The
+ * loops of Parallel.h, the iterations and factorizations of the linear solvers, and everything that
+ * waits for a watchdog do so. The call has an effect on a thread with an InterruptScope or a
+ * PollScope (a thread that calls the kernel) and, once this thread is interrupted, on the workers
+ * of its loops; elsewhere it costs two comparisons.
  *
- * An interruption is not an error: the result is of no interest, and what would turn an Error into
- * a message, a warning or a partial result does not see it.
+ * An interruption is not an error: the result is discarded, and handlers that turn an Error into a
+ * message, a warning, or a partial result do not catch it.
  *
  * @code
  * const tautline::InterruptScope scope; // from here on, SIGINT sets a flag
@@ -35,7 +35,7 @@ namespace tautline
 {
 /**
  * @brief Thrown where a computation is interrupted. Not derived from Error or std::exception, so
- * that no handler of these takes it for a failure.
+ * that their handlers do not treat it as a failure.
  */
 struct Interrupted
 {
@@ -43,17 +43,17 @@ struct Interrupted
 
 /**
  * @class tautline::InterruptScope
- * @brief While it exists, this thread's computations can be interrupted. Scopes nest; an
- * interruption lasts until the outermost one of the thread ends. Not for runs on several processes:
- * one that ends alone leaves the others waiting.
+ * @brief While this object exists, the computations of its thread can be interrupted. Scopes nest;
+ * an interruption lasts until the outermost scope of the thread ends. Not for runs on several
+ * processes: if one process ends alone, the others keep waiting.
  */
 class TAUTLINE_KERNEL_EXPORT InterruptScope
 {
 public:
   /**
-   * @param handleSignal whether SIGINT interrupts, as long as any such scope exists; the handler
-   * that was there before is restored with the last one. A signal that the process ignores stays
-   * ignored. Without it, only cancel() interrupts.
+   * @param handleSignal whether SIGINT interrupts while any such scope exists; the previous handler
+   * is restored with the last scope. A signal that the process ignores stays ignored. Without it,
+   * only cancel() interrupts.
    */
   explicit InterruptScope(bool handleSignal = true);
   ~InterruptScope();
@@ -64,7 +64,7 @@ public:
   static void cancel();
   /// Whether SIGINT has arrived in a scope of this thread that handles it.
   static bool signalled();
-  /// Whether the computations of this thread are interrupted, by either.
+  /// Whether the computations of this thread are interrupted, by a signal or by cancel().
   static bool interrupted();
 
 private:
@@ -73,8 +73,9 @@ private:
 
 /**
  * @class tautline::PollScope
- * @brief While it exists, throwIfInterrupted() on this thread calls a function from time to time,
- * for instance to end the computation at a deadline. Scopes nest: all functions are called.
+ * @brief While this object exists, throwIfInterrupted() on this thread calls a function
+ * periodically, for example to end the computation at a deadline. Scopes nest: all functions are
+ * called.
  */
 class TAUTLINE_KERNEL_EXPORT PollScope
 {
@@ -82,13 +83,13 @@ public:
   /// Seconds between two calls.
   static constexpr double Interval = 0.1;
 
-  /// @param poll ends the computation by what it throws; may itself compute, without being called
+  /// @param poll throws to end the computation; may itself compute and is not called recursively
   explicit PollScope(std::function<void()> poll);
   ~PollScope();
   PollScope(const PollScope&) = delete;
   PollScope& operator=(const PollScope&) = delete;
 
-  /// Calls the functions of this scope and of those around it, the outermost first.
+  /// Calls the functions of this scope and of the enclosing scopes, the outermost first.
   void call() const;
 
 private:
@@ -97,9 +98,9 @@ private:
 };
 
 /**
- * @brief Throws Interrupted if the computations of this thread are interrupted, or on a worker
- * those of its loop's caller, and what a function of a PollScope throws. Has no effect while
- * another exception is on its way.
+ * @brief Throws Interrupted if the computations of this thread are interrupted, or, on a worker, if
+ * the computations of the caller of its loop are. Propagates exceptions from PollScope functions.
+ * Has no effect during stack unwinding.
  */
 TAUTLINE_KERNEL_EXPORT void throwIfInterrupted();
 
@@ -114,20 +115,20 @@ inline void pollInterruption(Index pass)
 }
 
 /**
- * @brief For tests, which find loops without a poll by it: begins to measure how long threads with
- * a scope compute without calling throwIfInterrupted(), or ends it. Forgets what was measured.
+ * @brief For tests that detect loops without polls: starts or ends measuring how long threads with
+ * a scope compute without calling throwIfInterrupted(). Discards earlier measurements.
  */
 TAUTLINE_KERNEL_EXPORT void measurePolls(bool measure);
 
 /**
- * @brief The longest time that a thread has computed between two polls, from the begin of its
- * outermost scope or to its end, since measurePolls(true). CPU seconds of that thread: neither
- * waiting nor other processes count, nor what follows an interruption.
+ * @brief The longest time that a thread has computed between two polls, or between a poll and the
+ * start or end of its outermost scope, since measurePolls(true). In CPU seconds of the thread:
+ * excludes waiting, other processes, and the time after an interruption.
  */
 TAUTLINE_KERNEL_EXPORT double longestUnpolledSeconds();
 
-/// Whether throwIfInterrupted() can have an effect on this thread, which is no worker: then work
-/// that cannot call it is worth a watchdog.
+/// Whether throwIfInterrupted() can have an effect on this thread, which is not a worker: if so,
+/// work that cannot call it needs a watchdog.
 TAUTLINE_KERNEL_EXPORT bool interruptible();
 }
 #endif

@@ -10,7 +10,7 @@ const char* describe(StopReason reason)
     case StopReason::GradientNorm:
       return "Converged: the gradient norm is below its tolerance.";
     case StopReason::RelativeChange:
-      return "Converged: the objective hardly changes any more.";
+      return "Converged: the objective hardly changes anymore.";
     case StopReason::TwoDigits:
       return "The mean qualities keep two decimals.";
     case StopReason::Reduction:
@@ -18,7 +18,7 @@ const char* describe(StopReason reason)
     case StopReason::AllValid:
       return "All elements are valid.";
     case StopReason::IterationLimit:
-      return "The limit of iterations is reached.";
+      return "The iteration limit is reached.";
     case StopReason::TimeLimit:
       return "The time limit is reached.";
     case StopReason::Aborted:

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Iteration.h
- * @brief What iterative methods have in common: why they stopped, a record per iteration, what
- * observers are passed.
+ * @brief Types shared by the iterative methods: stop reasons, iteration records, and the data
+ * passed to observers.
  */
 #ifndef tautline_Iteration_h
 #define tautline_Iteration_h
@@ -18,7 +18,7 @@ namespace tautline
 enum class StopReason : int
 {
   GradientNorm = 0,   ///< the gradient is small enough
-  RelativeChange = 1, ///< the objective hardly changes any more
+  RelativeChange = 1, ///< the objective hardly changes anymore
   TwoDigits = 2,      ///< mean qualities agree with the previous iteration's to two decimals
   Reduction = 3,      ///< the requested fraction of the possible reduction is reached
   AllValid = 4,       ///< no element is inverted or degenerate
@@ -45,7 +45,7 @@ struct IterationRecord
   Index moving = 0;        ///< vertices that still move (local algorithms with culling)
 };
 
-/// What observers receive after each iteration.
+/// The data that observers receive after each iteration.
 struct IterationState
 {
   const IterationRecord& record;
@@ -54,7 +54,7 @@ struct IterationState
   std::function<void(double*)> points;
 };
 
-/// A surface the vertices of a surface mesh stay on.
+/// A surface on which the vertices of a surface mesh stay.
 struct SurfaceConstraint
 {
   bool project = true; ///< project moved vertices back to the input surface

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file LargeArray.h
- * @brief Arrays that are written as a whole before they are read.
- * Internal: not installed.
+ * @brief Arrays that are fully written before they are read. Internal: not installed.
  */
 #ifndef tautline_LargeArray_h
 #define tautline_LargeArray_h
@@ -24,8 +23,8 @@ namespace tautline
 /**
  * @class tautline::LargeArrayAllocator
  * @brief Memory that resize() does not clear, so that the threads that fill an array touch it
- * first, in large pages where the system has them: an array that is written at random then costs
- * fewer faults and look-ups of pages.
+ * first. It uses large pages where the system supports them, which reduces page faults and look-ups
+ * for random writes.
  */
 template <class T>
 class LargeArrayAllocator : public std::allocator<T>
@@ -51,7 +50,8 @@ public:
     }
     void* memory = ::operator new(count * sizeof(T), std::align_val_t(pageSize));
 #if defined(__linux__) && defined(MADV_HUGEPAGE)
-    madvise(memory, count * sizeof(T), MADV_HUGEPAGE); // a wish: its failure changes no result
+    // a hint: its failure does not change results
+    madvise(memory, count * sizeof(T), MADV_HUGEPAGE);
 #endif
     return static_cast<T*>(memory);
   }
@@ -62,7 +62,7 @@ public:
                    : std::allocator<T>::deallocate(memory, count);
   }
 
-  /// Does not set numbers that resize() adds.
+  /// Does not initialize the elements that resize() adds.
   template <class U>
   void construct(U* place) noexcept(std::is_nothrow_default_constructible_v<U>)
   {
@@ -78,7 +78,7 @@ private:
   static constexpr std::size_t pageSize = std::size_t(1) << 21; ///< of a large page
   static constexpr std::size_t fewPages = 2;
 
-  /// Too large a count is refused by std::allocator.
+  /// std::allocator rejects counts that are too large.
   static bool isLarge(std::size_t count)
   {
     return count >= fewPages * pageSize / sizeof(T) &&
@@ -86,7 +86,7 @@ private:
   }
 };
 
-/// A vector whose numbers are not set by resize().
+/// A vector whose elements are not initialized by resize().
 template <class T>
 using LargeArray = std::vector<T, LargeArrayAllocator<T>>;
 }

@@ -26,7 +26,7 @@ public:
     double sy = 0, yy = 0; ///< s . y and y . y
   };
 
-  /// `algebra` has to live as long as this.
+  /// `algebra` must outlive this object.
   explicit LimitedMemory(const VectorAlgebra& algebra)
     : Algebra(algebra)
   {
@@ -71,8 +71,8 @@ public:
 
   /**
    * @brief d = -H g with the approximation H of the inverse Hessian.
-   * @param precondition called as double(std::vector<double>& q) between the loops: replaces q by
-   * P q with an approximation P of the inverse Hessian of its own, and returns a factor of it
+   * @param precondition called as double(std::vector<double>& q) between the loops: replaces q by P
+   * q, with its own approximation P of the inverse Hessian, and returns a factor for P
    * @return the slope g . d
    */
   template <class Precondition>
@@ -83,7 +83,7 @@ public:
     const VectorAlgebra& algebra = this->Algebra;
     double* q = d.data();
     const double* gradient = g.data();
-    // The update of each loop comes with the product for the next one.
+    // Each update is fused with the product for the next one.
     const double* s = pairs > 0 ? this->newest().s.data() : gradient;
     double product = algebra.updateAndDot([=](double, Index i) { return -gradient[i]; }, q, s);
     double alpha[Capacity];

@@ -12,11 +12,11 @@
 namespace tautline
 {
 /**
- * @brief Whether the caller of the loop that this worker helps with is interrupted.
+ * @brief Whether the caller of this worker's loop is interrupted.
  *
  * Chunks that take longer than a tenth of a second call throwIfInterrupted() or pollInterruption(),
- * which throw on workers where this is true, or ask this and end soon. False on threads that are no
- * workers.
+ * which throw on workers where this is true, or call this function and end soon. False on threads
+ * that are not workers.
  */
 TAUTLINE_KERNEL_EXPORT bool callerIsInterrupted();
 }

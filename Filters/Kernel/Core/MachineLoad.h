@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MachineLoad.h
- * @brief How busy the machine is.
- * Internal: not installed.
+ * @brief The load of the machine. Internal: not installed.
  */
 #ifndef tautline_MachineLoad_h
 #define tautline_MachineLoad_h
@@ -12,11 +11,11 @@
 namespace tautline
 {
 /**
- * @brief How many threads of all processes of the machine run or wait for a core, this one
- * included; 0 where the system does not tell.
+ * @brief The number of threads on the machine that run or wait for a core, including this one; 0 if
+ * the system does not report it.
  *
- * Loops of Parallel.h that take less than a third of a second are not shared while these are more
- * than two per core.
+ * Loops of Parallel.h that take less than a third of a second are not shared among threads while
+ * this exceeds two per core.
  */
 TAUTLINE_KERNEL_EXPORT int runnableThreads();
 }

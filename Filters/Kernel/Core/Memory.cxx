@@ -38,7 +38,7 @@ double valueAfter(const std::string& file, const std::string& word, double missi
   return missing;
 }
 
-/// The number a file consists of; `missing` if there is no such file or it says "max".
+/// The number in a file; `missing` if there is no such file or it contains "max".
 double valueIn(const std::string& file, double missing)
 {
   std::ifstream stream(file);
@@ -55,8 +55,8 @@ double freeOnMachine()
     Unlimited, kibibyte * valueAfter("/proc/meminfo", "MemAvailable:", otherwise / kibibyte));
 }
 
-/// What a control group and those above it leave. Files that were read count as used, but can be
-/// dropped.
+/// The memory left by a control group and its parents. The page cache counts as used but can be
+/// reclaimed.
 double leftByGroup(const std::string& root, std::string path, const char* limit, const char* usage,
   const char* droppable)
 {
@@ -128,7 +128,7 @@ Taken takenMemory()
   return { size * pages[0], size * pages[5] };
 }
 
-/// What the limits of the process leave, beyond what it has.
+/// The memory that the process limits still allow.
 double leftByLimits()
 {
   const Taken taken = takenMemory();
@@ -194,7 +194,7 @@ AllowedMemory::~AllowedMemory()
 void requireMemory(double bytes, const std::string& what, const std::string& remedy, double limit)
 {
   limit = allowedInTest > 0 ? allowedInTest : limit;
-  // So little that it is not worth looking up: without it, std::bad_alloc is thrown.
+  // Small amounts are not checked: if they are not available, std::bad_alloc is thrown.
   constexpr double little = 16 * 1048576.0;
   if (bytes <= little && limit <= 0)
   {

@@ -4,9 +4,9 @@
  * @brief The memory that is available, and the check before large allocations.
  * Internal: not installed.
  *
- * Linux grants memory that it does not have and ends a process that uses it; and libraries that get
- * none often crash. So what needs much memory in proportion to a product of its inputs (a dense
- * matrix, all pairs of elements, cells of a given size) is estimated and checked before.
+ * Linux overcommits memory and kills processes that use it, and libraries often crash when an
+ * allocation fails. Therefore, large allocations that grow with a product of the inputs (a dense
+ * matrix, all pairs of elements, cells of a given size) are estimated and checked in advance.
  */
 #ifndef tautline_Memory_h
 #define tautline_Memory_h
@@ -21,13 +21,13 @@
 namespace tautline
 {
 /**
- * @brief Bytes this process can still take: the least of what is free on the machine, what the
- * control groups of the process leave, and what the limits on its address space and data leave
- * (`ulimit -v`, `ulimit -d`).
+ * @brief The number of bytes that this process can still allocate: the minimum of the free memory
+ * of the machine, the remainder in the control groups of the process, and the remainder below its
+ * limits on address space and data (`ulimit -v`, `ulimit -d`).
  */
 TAUTLINE_KERNEL_EXPORT double availableMemory();
 
-/// What requireMemory() throws.
+/// The error that requireMemory() throws.
 class TAUTLINE_KERNEL_EXPORT MemoryError : public Error
 {
 public:
@@ -35,12 +35,12 @@ public:
 };
 
 /**
- * @brief Throws MemoryError if so many bytes are not available.
+ * @brief Throws MemoryError if this many bytes are not available.
  *
  * The message is "what takes about 3.2 GiB of memory and 1.5 GiB are available: remedy".
  * @param bytes an estimate; NaN and infinity are too much
  * @param what the subject of a sentence, in the singular: "the matrix"
- * @param remedy what the user can do: "take a smaller horizon"
+ * @param remedy what the user can do: "use a smaller horizon"
  * @param limit bytes that a user allows, or 0 for all that is available
  */
 TAUTLINE_KERNEL_EXPORT void requireMemory(
@@ -48,8 +48,8 @@ TAUTLINE_KERNEL_EXPORT void requireMemory(
 
 /**
  * @class tautline::AllowedMemory
- * @brief While it exists, requireMemory() allows its thread so many bytes, whatever is available:
- * for tests of what is done without memory.
+ * @brief While this object exists, requireMemory() allows its thread this many bytes, regardless of
+ * the available memory: for tests of low-memory behavior.
  */
 class TAUTLINE_KERNEL_EXPORT AllowedMemory
 {
@@ -64,7 +64,7 @@ private:
   double Before; ///< 0: all that is available
 };
 
-/// Makes allocations of this process fail when it has taken so many more bytes.
+/// Makes allocations of this process fail after it has allocated this many more bytes.
 TAUTLINE_KERNEL_EXPORT void limitMemory(double more);
 
 /// The message of an error for the user: "Not enough memory: remedy." for std::bad_alloc.

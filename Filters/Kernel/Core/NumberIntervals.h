@@ -19,9 +19,10 @@ namespace tautline
 {
 /**
  * @class tautline::NumberIntervals
- * @brief The place of a number in a sorted list, in constant time where the numbers are dense.
+ * @brief The position of a number in a sorted list, in constant time where the numbers are dense.
  *
- * There are about as many intervals of equal length as numbers; it has where those of each begin.
+ * The range is divided into about as many equal intervals as there are numbers; the table stores
+ * the first position of each interval.
  */
 class NumberIntervals
 {
@@ -29,8 +30,8 @@ public:
   NumberIntervals() = default;
 
   /**
-   * @param count of the list, below 2^31; Error otherwise
-   * @param numberOf numberOf(place) for places in [0, count), increasing
+   * @param count length of the list, below 2^31; throws Error otherwise
+   * @param numberOf numberOf(place) for positions in [0, count), increasing
    */
   template <class NumberOf>
   NumberIntervals(Index count, const NumberOf& numberOf)
@@ -56,7 +57,7 @@ public:
     this->Starts.push_back(static_cast<std::int32_t>(count));
   }
 
-  /// The first place whose number is not below the given one, as std::lower_bound.
+  /// The first position whose number is not less than the given one, like std::lower_bound.
   template <class NumberOf>
   Index find(Index number, const NumberOf& numberOf) const
   {
@@ -88,7 +89,7 @@ public:
 private:
   Index Low = 0;
   int Bits = 0;                     ///< an interval has 2^Bits numbers
-  std::vector<std::int32_t> Starts; ///< places; the last is the count
+  std::vector<std::int32_t> Starts; ///< positions; the last entry is the count
 };
 }
 #endif

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Packet.h
- * @brief A packet of doubles, one per element of a batch, with the functions metrics need.
+ * @brief A packet of doubles, one per element of a batch, with the functions that metrics need.
  *
- * The width is that of the machine the kernel is compiled for: 8 (AVX-512), 4 (AVX) or 2.
- * Arithmetic and comparisons are the compiler's vector extensions. Packets
- * are not passed to or from the library: a user's own metric (UserMetric.h) may be compiled for
- * another width.
+ * The width depends on the machine for which the kernel is compiled: 8 (AVX-512), 4 (AVX) or 2.
+ * Arithmetic and comparisons use the vector extensions of the compiler. Packets are not passed to
+ * or from the library: a user-defined metric (UserMetric.h) may be compiled for another width.
  */
 #ifndef tautline_Packet_h
 #define tautline_Packet_h
@@ -67,7 +66,7 @@ inline Packet min(Packet a, Packet b)
 inline Packet sqrt(Packet x)
 {
 #if defined(__AVX512F__)
-  // The masked form: the plain one reads an undefined register, which compilers warn of.
+  // The masked form: the plain form reads an undefined register, which causes compiler warnings.
   return (Packet)_mm512_mask_sqrt_pd((__m512d)x, 0xff, (__m512d)x);
 #elif defined(__AVX__)
   return (Packet)_mm256_sqrt_pd((__m256d)x);
@@ -76,7 +75,7 @@ inline Packet sqrt(Packet x)
 #endif
 }
 
-/// Calls a scalar function for each element; for the functions no vector unit has.
+/// Calls a scalar function for each element; for functions without vector instructions.
 template <class Function>
 Packet each(Packet x, const Function& function)
 {
@@ -114,15 +113,15 @@ inline HalfIntegers upperHalves(Packet x)
 #endif
 }
 
-/// x^(-1/3) for normal x > 0, to rounding. Meaningless elsewhere: finite at 0 and between 0 and the
-/// smallest normal number, NaN or infinite for negative and infinite x.
+/// x^(-1/3) for normal x > 0, to rounding. Otherwise meaningless: finite for 0 and positive
+/// subnormal x, NaN or infinite for negative and infinite x.
 inline Packet inverseCbrt(Packet x)
 {
-  // A guess within 3.5 % from the exponent bits, then two steps of order four:
-  // y (1 + r/3 + 2 r^2/9 + 14 r^3/81) with r = 1 - x y^3. The guess needs the upper halves of the
-  // bits only, which most machines convert in one instruction.
+  // A guess within 3.5 % from the exponent bits, then two steps of order four: y (1 + r/3 + 2 r^2/9
+  // + 14 r^3/81) with r = 1 - x y^3. The guess needs only the upper halves of the bits, which most
+  // machines convert in one instruction.
   constexpr double third = 1.0 / 3.0;
-  constexpr double guess = 1430188458.0; // 4/3 of the upper bits of 1.0, less the mean error
+  constexpr double guess = 1430188458.0; // 4/3 of the upper bits of 1.0, minus the mean error
   constexpr int half = 32;
   const Packet scaled = guess - third * __builtin_convertvector(upperHalves(x), Packet);
   const Mask bits = __builtin_convertvector(__builtin_convertvector(scaled, HalfIntegers), Mask);
@@ -159,7 +158,7 @@ inline Packet oddPairs(Packet a, Packet b)
 #endif
 }
 
-/// Two doubles, neighbours in memory.
+/// Two doubles, adjacent in memory.
 using Pair = double __attribute__((vector_size(2 * sizeof(double))));
 
 inline Pair loadPair(const double* p)
@@ -196,14 +195,14 @@ inline Packet loadPairs(const double* const* p, int offset)
 /// Loads x y z of a point per lane. Always inlined: a call would cost as much as the loads.
 inline __attribute__((always_inline)) void loadPoints(const double* const* p, Packet* xyz)
 {
-  // As pairs x y and y z: nothing beyond a point is read.
+  // As pairs x y and y z, so that nothing beyond a point is read.
   const Packet even = loadPairs(p, 0), odd = loadPairs(p + 1, 0);
   xyz[0] = evenPairs(even, odd);
   xyz[1] = oddPairs(even, odd);
   xyz[2] = oddPairs(loadPairs(p, 1), loadPairs(p + 1, 1));
 }
 
-/// A vector x y z per lane, laid out so that each can be added to or stored in memory by itself.
+/// A vector x y z per lane, laid out so that each can be added to memory or stored separately.
 class VectorLanes
 {
 public:
@@ -268,7 +267,7 @@ inline void subtract(const Packet* a, const Packet* b, Packet* result)
   }
 }
 
-/// Finite or zero: the values and gradients of elements beyond arithmetic are 0.
+/// Replaces nonfinite values by 0: the values and gradients of elements that overflow are 0.
 inline Packet finiteOrZero(Packet x)
 {
   return select(abs(x) <= 1.7976931348623157e308, x, Packet{});

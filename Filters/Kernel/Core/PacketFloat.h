@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PacketFloat.h
- * @brief A packet of floats with the functions shape matching needs; twice as many as of doubles.
+ * @brief A packet of floats with the functions that shape matching needs; twice as wide as a packet
+ * of doubles.
  *
  * Internal: not installed.
  */
@@ -76,10 +77,11 @@ inline FloatPacket sqrt(FloatPacket x)
 #endif
 }
 
-/// The natural logarithm of normal x > 0, to about 2e-7 absolute near 1 and rounding elsewhere.
+/// The natural logarithm of normal x > 0, with an absolute error of about 2e-7 near 1 and rounding
+/// error elsewhere.
 inline FloatPacket log(FloatPacket x)
 {
-  // x = 2^e m with m in [sqrt(1/2), sqrt(2)); the polynomial of log(1 + f) is that of Cephes.
+  // x = 2^e m with m in [sqrt(1/2), sqrt(2)); the polynomial for log(1 + f) is from Cephes.
   constexpr std::int32_t rootHalf = 0x3f3504f3;
   const FloatMask shifted = reinterpret_cast<FloatMask>(x) - rootHalf;
   const FloatMask exponent = shifted >> 23;

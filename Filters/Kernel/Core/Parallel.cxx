@@ -30,14 +30,14 @@ namespace tautline
 {
 namespace
 {
-/// How long the caller looks for the end of the last chunks before it sleeps: about the time that
-/// waking up takes.
+/// How long the caller spins for the end of the last chunks before it sleeps: about the wake-up
+/// time of a thread.
 constexpr std::chrono::microseconds SpinTime(20);
 constexpr std::chrono::milliseconds PollInterval(50); // of a caller that waits for a long chunk
-/// Of the loop that this thread, a worker, helps with; null on other threads.
+/// The flag of the loop that this worker thread helps with; null on other threads.
 thread_local const std::atomic<bool>* interruptedCaller = nullptr;
 constexpr int PausesPerLook = 16;
-/// Seconds that a loop takes at least that is worth workers on a busy machine, too.
+/// The minimum duration in seconds of a loop that gets workers even on a busy machine.
 constexpr double ManySlices = 0.3;
 
 void pauseBriefly()
@@ -68,7 +68,7 @@ double seconds(Clock::duration duration)
   return std::chrono::duration<double>(duration).count();
 }
 
-/// Whether so many threads of all processes have work that each gets half a core at most.
+/// Whether the machine is so busy that each thread gets at most half a core.
 bool isCrowded()
 {
   constexpr int threadsPerCore = 2;
@@ -77,15 +77,15 @@ bool isCrowded()
 
 //------------------------------------------------------------------------------
 /**
- * What a thread learns from its loops. A worker is worth its start only in a loop that takes longer
- * than that. Where other processes compete for the cores, a worker that has begun a chunk often
- * loses its core, and the caller waits for a time slice of each competitor: then only loops that
+ * The statistics of a thread about its loops. A worker pays off only in a loop that takes longer
+ * than starting the worker. If other processes compete for the cores, a worker often loses its core
+ * within a chunk, and the caller waits for a time slice of each competitor: then only loops that
  * are longer than many time slices get workers.
  */
 class Experience
 {
 public:
-  /// Seconds that a loop would take the caller alone.
+  /// The expected seconds of a loop without workers.
   double expected(ChunkWork::Function function, Index chunks) const
   {
     constexpr double unknown = 1e-3;
@@ -94,22 +94,22 @@ public:
                                              : found->second * static_cast<double>(chunks);
   }
 
-  /// Whether a loop need not be measured: what its chunks take is known, and workers would not
-  /// help. On a crowded machine measuring costs time: when a thread asks for its computing time,
-  /// Linux ends its time slice if that is used up, not only at the next tick.
+  /// Whether a loop need not be measured: the time of its chunks is known, and workers would not
+  /// help. On a crowded machine, measuring costs time: when a thread queries its CPU time, Linux
+  /// ends an expired time slice immediately instead of at the next tick.
   bool measuredEnough(ChunkWork::Function function) const
   {
     return this->Crowded && this->ChunkSeconds.count(function) > 0;
   }
 
-  /// Whether workers are worth their start in such a loop.
+  /// Whether a loop is too short for workers to pay off.
   static bool brief(double expected)
   {
     constexpr double start = 20e-6;
     return expected < start;
   }
 
-  /// Whether workers are worth while in a loop that is not brief.
+  /// Whether to invite workers for a loop that is not brief.
   bool inviteWorkers(double expected)
   {
     constexpr double share = 0.4, enough = 1e-3;
@@ -118,7 +118,8 @@ public:
     {
       return true;
     }
-    // A thread that has slept gets a core at once even on a busy machine: its share is not all.
+    // A thread that has slept gets a core immediately even on a busy machine, so its measured share
+    // is not sufficient.
     if (const Clock::time_point now = Clock::now(); now >= this->NextLook)
     {
       this->Crowded = isCrowded();
@@ -127,7 +128,7 @@ public:
     return !this->Crowded && (this->Passed <= enough || this->Computed >= share * this->Passed);
   }
 
-  /// Adds the seconds that the caller computed for in a loop.
+  /// Records the CPU seconds of the caller in a loop.
   void addChunks(ChunkWork::Function function, Index chunks, double computed)
   {
     if (chunks > 0)
@@ -139,7 +140,7 @@ public:
     }
   }
 
-  /// Adds the seconds that passed, and for how many of them the caller had a core.
+  /// Records the elapsed seconds, and how many of them the caller had a core.
   void addTime(double computed, double passed)
   {
     constexpr double memory = 0.2; // seconds
@@ -149,16 +150,16 @@ public:
   }
 
 private:
-  std::unordered_map<ChunkWork::Function, double> ChunkSeconds; ///< by what a chunk does
-  double Computed = 0, Passed = 0;                              ///< in loops, older ones less
-  Clock::time_point NextLook;                                   ///< at the machine
+  std::unordered_map<ChunkWork::Function, double> ChunkSeconds; ///< by chunk function
+  double Computed = 0, Passed = 0;                              ///< in loops, with decaying weights
+  Clock::time_point NextLook;                                   ///< at the load of the machine
   bool Crowded = false;
 };
 
 //------------------------------------------------------------------------------
 /**
- * A loop under way. A worker that comes late finds no chunk left. It holds the loop, not what the
- * caller has: that exists only as long as a chunk is being run.
+ * A running loop. A worker that arrives late finds no chunk left. Workers share ownership of the
+ * loop but not of the data of the caller, which exist only while a chunk is running.
  */
 class Loop
 {
@@ -169,7 +170,7 @@ public:
   {
   }
 
-  /// What a worker does.
+  /// The work of a worker.
   void help() noexcept
   {
     const std::atomic<bool>* before = std::exchange(interruptedCaller, &this->Interrupted);
@@ -179,8 +180,8 @@ public:
     interruptedCaller = before;
   }
 
-  /// What the caller does; returns the number of chunks it ran. Calls `whenLong`, if given, once
-  /// the loop turns out to be longer than many time slices.
+  /// The work of the caller; returns the number of chunks it ran. Calls `whenLong`, if given, when
+  /// the loop proves longer than many time slices.
   Index lead(const Proceed& proceed, const std::function<void()>& whenLong = nullptr)
   {
     Index run = 0;
@@ -200,7 +201,7 @@ public:
     }
     catch (...)
     {
-      this->fail(-1, std::current_exception()); // of `proceed`, or an interruption
+      this->fail(-1, std::current_exception()); // thrown by `proceed`, or an interruption
       this->Interrupted = true;
     }
     this->close();
@@ -247,7 +248,7 @@ private:
     }
     catch (const tautline::Interrupted&)
     {
-      this->Interrupted = true; // chunks of workers end, too
+      this->Interrupted = true; // ends the chunks of workers
       this->fail(chunk, std::current_exception());
     }
     catch (...)
@@ -258,7 +259,8 @@ private:
     return true;
   }
 
-  /// Chunks begin in order: all before the first one that fails are run, whatever fails first.
+  /// Chunks begin in order: all chunks before the first failing one are run, regardless of the
+  /// order of failures.
   void fail(Index chunk, std::exception_ptr error)
   {
     this->close();
@@ -270,7 +272,7 @@ private:
     }
   }
 
-  /// Lets no other chunk begin.
+  /// Prevents further chunks from starting.
   void close()
   {
     const Index next = this->Next.exchange(this->Chunks);
@@ -309,7 +311,7 @@ private:
     }
   }
 
-  /// Chunks of workers may take long: they see by the flag that the caller is interrupted.
+  /// Chunks of workers may take long, so the flag informs them that the caller is interrupted.
   void poll() noexcept
   {
     if (this->Interrupted)
@@ -339,8 +341,8 @@ private:
 };
 
 //------------------------------------------------------------------------------
-/// The threads of oneTBB. One arena for each number of workers asked for, kept for ever: they may
-/// outlive all other static objects.
+/// The threads of oneTBB. One arena per requested number of workers. Arenas are never destroyed:
+/// they may outlive all other static objects.
 class Workers
 {
 public:
@@ -350,7 +352,7 @@ public:
     return *workers;
   }
 
-  /// Asks so many workers to help. They need not come: the caller can do all by itself.
+  /// Invites this many workers. They need not arrive: the caller can do all the work alone.
   void invite(int number, const std::shared_ptr<Loop>& loop) noexcept
   {
     if (this->Forked)
@@ -397,8 +399,8 @@ private:
       .first->second.get();
   }
 
-  /// How many of so many threads can be started at the same time: oneTBB ends the process where it
-  /// cannot start one.
+  /// How many of the requested threads can be started at the same time: oneTBB ends the process if
+  /// it cannot start one.
   static int startable(int number)
   {
     std::vector<std::thread> threads;
@@ -414,7 +416,7 @@ private:
     }
     catch (const std::exception&)
     {
-      // as many as there are
+      // the thread limit is reached
     }
     for (std::thread& thread : threads)
     {
@@ -442,7 +444,7 @@ bool runChunks(Index chunks, int threads, ChunkWork work, const Proceed& proceed
   {
     return true;
   }
-  // More workers than oneTBB has would not come.
+  // Workers beyond the limit of oneTBB would not arrive.
   const Index most = std::min({ static_cast<Index>(resolveThreads(threads)), chunks,
     static_cast<Index>(
       tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)) });

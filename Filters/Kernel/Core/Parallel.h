@@ -4,21 +4,22 @@
  * @brief Threaded loops whose result does not depend on the number of threads.
  * Internal: not installed.
  *
- * Work is cut into chunks of a fixed size. Which thread takes which chunk varies; what a chunk does
- * and the order in which chunk results are combined do not.
+ * Work is divided into chunks of a fixed size. The assignment of chunks to threads varies; the work
+ * of a chunk and the order in which chunk results are combined do not.
  *
- * The calling thread runs chunks itself. Workers of oneTBB help where they are free; it then waits
- * only for chunks that were begun, first spinning for some microseconds, then asleep, and runs
- * nothing else meanwhile. Loops may therefore be nested, and be called by several threads. Where
- * threads cannot be started, and in the child of a fork, the caller does all the work; so it does
- * in loops that are too short for workers to pay, by what the thread learned from earlier ones.
- * Loops report to a LoopProgress of the calling thread, those within a chunk do not.
+ * The calling thread runs chunks itself. Free oneTBB workers help. The caller then waits only for
+ * chunks that have begun, first spinning for some microseconds, then sleeping, and runs nothing
+ * else meanwhile. Loops may therefore be nested and be called from several threads. If threads
+ * cannot be started, in the child of a fork, and in loops that are too short for workers to pay off
+ * (estimated from earlier loops), the caller does all the work. Loops report to a LoopProgress of
+ * the calling thread; loops within a chunk do not.
  *
  * `threads` is the largest number of threads of a loop, the caller included; 0 means all cores the
  * process may use, or OMP_NUM_THREADS if that is set and smaller.
  *
- * An exception thrown in a chunk ends the loop and is thrown to the caller. Of several, it is the
- * one of the first chunk, so that the message does not depend on the number of threads.
+ * An exception thrown in a chunk ends the loop and is thrown to the caller. If several chunks
+ * throw, it is the exception of the first chunk, so that the message does not depend on the number
+ * of threads.
  */
 #ifndef tautline_Parallel_h
 #define tautline_Parallel_h
@@ -43,10 +44,10 @@ inline Index numberOfChunks(Index n)
   return (n + ChunkSize - 1) / ChunkSize;
 }
 
-/// The number of threads a `threads` option stands for.
+/// The number of threads for the value of a `threads` option.
 TAUTLINE_KERNEL_EXPORT int resolveThreads(int threads);
 
-/// Refers to what a chunk does; the callable outlives the loop.
+/// A reference to the chunk function; the callable must outlive the loop.
 class ChunkWork
 {
 public:
@@ -59,7 +60,7 @@ public:
   {
   }
   void operator()(Index chunk) const { this->Call(this->Object, chunk); }
-  /// One for each type of callable.
+  /// A distinct function for each type of callable.
   Function function() const { return this->Call; }
 
 private:
@@ -104,10 +105,10 @@ bool parallelFor(
 
 /**
  * @class tautline::ScratchPool
- * @brief Work space for chunks: a chunk borrows one that no other uses, and gives it back.
+ * @brief Work spaces for chunks: each chunk borrows a free one and returns it.
  *
- * As many are made as there are threads, when they are first needed. A chunk finds in it what an
- * earlier one left there.
+ * They are created on demand, at most one per thread. The contents left by an earlier chunk are
+ * kept.
  */
 template <class Scratch>
 class ScratchPool

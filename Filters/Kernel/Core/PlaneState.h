@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PlaneState.h
- * @brief What a 2D elastic body is held by in the third direction.
+ * @brief Plane strain or plane stress: the constraint on a 2D elastic body in the third direction.
  */
 #ifndef tautline_PlaneState_h
 #define tautline_PlaneState_h
 
 namespace tautline
 {
-/// What a 2D elastic body is held by in the third direction.
+/// The constraint on a 2D elastic body in the third direction.
 enum class PlaneState : int
 {
   Strain = 0, ///< no strain: a slice of a long body

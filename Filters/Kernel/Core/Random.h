@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Random.h
- * @brief Random numbers that are the same everywhere.
- * Internal: not installed.
+ * @brief Random numbers that are the same on all systems. Internal: not installed.
  *
- * SplitMix64 (Steele, Lea and Flood, 2014): the state is a counter, the number its hash. A
- * generator is made from a seed, a stream and an item (for example a vertex), so that the numbers
- * of one item depend on no other. Reals are made of the upper 53 bits and directions by rejection,
- * with nothing but + - * / and the square root: the distributions and mathematical functions of the
- * standard library differ between systems.
+ * SplitMix64 (Steele, Lea and Flood, 2014): the state is a counter, and the random number is its
+ * hash. A generator is made from a seed, a stream and an item (for example a vertex), so that the
+ * numbers of one item are independent of all others. Real numbers use the upper 53 bits, and
+ * directions use rejection, with only + - * / and the square root: the distributions and
+ * mathematical functions of the standard library differ between systems.
  */
 #ifndef tautline_Random_h
 #define tautline_Random_h
@@ -37,7 +36,7 @@ public:
   /// In [-1, 1).
   double symmetric() { return 2.0 * this->uniform() - 1.0; }
 
-  /// A unit vector, evenly over the circle of the plane of two orthonormal vectors.
+  /// A unit vector, uniformly distributed on the unit circle spanned by two orthonormal vectors.
   Vec3 direction(const Vec3& e1, const Vec3& e2)
   {
     for (;;)
@@ -51,7 +50,7 @@ public:
     }
   }
 
-  /// A unit vector, evenly over the sphere.
+  /// A unit vector, uniformly distributed on the sphere.
   Vec3 direction()
   {
     for (;;)
@@ -65,7 +64,7 @@ public:
     }
   }
 
-  /// The increment of the counter, and the hash that makes a number of it.
+  /// The increment of the counter, and the hash that turns it into a random number.
   static constexpr std::uint64_t Increment = 0x9e3779b97f4a7c15u;
   static std::uint64_t hash(std::uint64_t z)
   {

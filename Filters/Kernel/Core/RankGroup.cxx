@@ -16,15 +16,15 @@ namespace
 /// Sums of integers of this width do not overflow, see orderlessSum().
 __extension__ typedef __int128 Wide;
 
-/// Bits of a value in units of the largest: before the point and behind it.
+/// Bits of a value in units of the largest: before and after the binary point.
 constexpr int highBits = 60, lowBits = 32;
 
-/// How errors begin that another rank explains.
+/// The prefix of errors that another rank explains.
 constexpr const char* vague = "Another rank";
 constexpr const char* interrupted = "the computation was interrupted";
 constexpr const char* elsewhere = "Another rank has rejected its part of the data.";
 
-/// An error of which all ranks know.
+/// An error that has been thrown on all ranks.
 class SharedError : public Error
 {
 public:
@@ -34,7 +34,7 @@ public:
   {
   }
 
-  bool alike; ///< whether all ranks have thrown the same from the same call of together()
+  bool alike; ///< whether all ranks have thrown the same error from the same call of together()
 };
 }
 
@@ -97,8 +97,8 @@ std::vector<Bytes> RankGroup::exchange(const std::vector<Bytes>& sent)
 //------------------------------------------------------------------------------
 std::vector<Index> RankGroup::transpose(std::vector<Index> numbers)
 {
-  // Number i is under way to the rank i after the one that has it. In each round those with one of
-  // the bits of i go as far as this bit is worth.
+  // Item i must move i ranks ahead of its owner. In the round of each bit, the items with this bit
+  // set in i move ahead by the value of the bit.
   const int own = this->rank(), size = this->size();
   std::rotate(numbers.begin(), numbers.begin() + own, numbers.end());
   for (int step = 1; step < size; step *= 2)
@@ -191,13 +191,13 @@ double RankGroup::orderlessSum(const std::vector<double>& values)
   {
     return 0.0;
   }
-  // Integers are added without rounding. A product by a power of two is exact; it takes two factors
-  // where one would overflow.
+  // Integers are added without rounding. A product with a power of two is exact; two factors are
+  // used where one would overflow.
   const int exponent = highBits - 1 - std::ilogb(largest), half = exponent / 2;
   const double first = std::ldexp(1.0, half), second = std::ldexp(1.0, exponent - half);
   constexpr double lowUnit = std::int64_t(1) << lowBits;
   Wide high = 0;
-  std::int64_t low = 0; // takes 2^31 parts, as each is below 2^32
+  std::int64_t low = 0; // can hold 2^31 terms, since each is below 2^32
   for (const double value : values)
   {
     const double scaled = value * first * second;
@@ -239,10 +239,10 @@ void RankGroup::together(const std::function<void()>& work)
   catch (const std::exception& error)
   {
     own = std::current_exception();
-    failure = errorText(error, "take more processes or a coarser mesh");
+    failure = errorText(error, "use more processes or a coarser mesh");
     failure = failure.empty() ? elsewhere : failure;
   }
-  catch (...) // an interruption, which is no error
+  catch (...) // an interruption, which is not an error
   {
     if (this->Left)
     {
@@ -276,7 +276,8 @@ void RankGroup::agree()
 }
 
 //------------------------------------------------------------------------------
-/// @param failure of this rank, or "" @param depth of the call of together() that it left
+/// @param failure the message of this rank, or "" @param depth of the call of together() that it
+///   left
 void RankGroup::agreeOn(const std::string& failure, int depth)
 {
   this->Left = false;
@@ -286,7 +287,7 @@ void RankGroup::agreeOn(const std::string& failure, int depth)
   }
   const std::vector<Bytes> all = this->gatherAll(Bytes(failure.begin(), failure.end()));
   const std::vector<Bytes> depths = this->gatherAll(bytesOf(std::vector<int>{ depth }));
-  // Of a rank that explains it, rather than of one that was told so.
+  // Prefer the message of a rank that explains the failure over a relayed one.
   const auto explains = [](const Bytes& text)
   { return !text.empty() && std::string(text.begin(), text.end()).rfind(vague, 0) != 0; };
   auto first = std::find_if(all.begin(), all.end(), explains);

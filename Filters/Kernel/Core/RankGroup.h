@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file RankGroup.h
- * @brief The ranks that work on one mesh, as the kernel sees them: MPI processes, threads of a
- * test, or this process alone.
+ * @brief The ranks that work on one mesh: MPI processes, threads of a test, or this process alone.
  */
 #ifndef tautline_RankGroup_h
 #define tautline_RankGroup_h
@@ -30,12 +29,12 @@ struct RankMessage
 
 /**
  * @class tautline::RankGroup
- * @brief Communication between ranks. All methods but rank() and size() are collective: every rank
- * calls them in the same order.
+ * @brief Communication between ranks. All methods except rank() and size() are collective: every
+ * rank calls them in the same order.
  *
- * What fails on one rank must not leave the others waiting. Code that calls these methods runs in
- * together(): each of them first agrees on whether a rank has left by an exception, and throws on
- * all ranks if one has. So algorithms throw where they find an error, as on one process.
+ * A failure on one rank must not leave the others waiting. Code that calls these methods runs in
+ * together(): each method first checks whether a rank has left with an exception and, if so, throws
+ * on all ranks. Algorithms can therefore throw where they find an error, as in a serial run.
  *
  * Implementations write sendAll() and gatherAll().
  */
@@ -46,16 +45,16 @@ public:
 
   virtual int rank() const = 0;
   virtual int size() const = 0;
-  /// Of MPI, for libraries that communicate by it; null: this rank alone, or ranks without MPI.
+  /// The MPI communicator, for libraries that use it; null: this rank alone, or ranks without MPI.
   virtual Communicator communicator() const { return nullptr; }
 
   /**
-   * @brief Does work that may communicate by this group. What it throws on any rank is thrown on
-   * all: what all ranks throw alike, as it is; else an Error with the message of the lowest rank
-   * that explains it. An interruption is one on its own rank, and an error on the others. Calls
-   * nest.
+   * @brief Does work that may communicate through this group. An exception on any rank is thrown on
+   * all: unchanged if all ranks throw the same, otherwise as an Error with the message of the
+   * lowest rank that explains it. An interruption remains an interruption on its own rank and
+   * becomes an error on the others. Calls nest.
    *
-   * What communicates in other ways, as PETSc does, needs all ranks: agree() before it.
+   * Code that communicates in other ways, such as PETSc, needs all ranks: call agree() before it.
    */
   void together(const std::function<void()>& work);
   /// Throws, on all ranks, if one has left together(). Every other method begins with it.
@@ -64,14 +63,15 @@ public:
   /**
    * @brief Sends and receives messages of known sizes.
    * @param sent at most one message per rank
-   * @param received of the size that each message has, at most one per rank
+   * @param received with the size of each message, at most one per rank
    */
   void send(const std::vector<RankMessage>& sent, std::vector<RankMessage>& received);
   /// The bytes of every rank, on every rank.
   std::vector<Bytes> allGather(const Bytes& own);
 
   /**
-   * @brief Sends one number to each rank (numbers[r], also to itself) and returns that of each.
+   * @brief Sends one number to each rank (numbers[r], also to itself) and returns the number
+   * received from each rank.
    *
    * In as many rounds as the size has binary digits, each with one message of about half of the
    * numbers, so that no rank has a table of all ranks by all ranks. Source: J. Bruck et al.,
@@ -80,7 +80,8 @@ public:
    */
   std::vector<Index> transpose(std::vector<Index> numbers);
   /**
-   * @brief Sends bytes to each rank (sent[r], also to itself) and returns those of each rank.
+   * @brief Sends bytes to each rank (sent[r], also to itself) and returns the bytes received from
+   * each rank.
    */
   std::vector<Bytes> exchange(const std::vector<Bytes>& sent);
   /// The same with lists of items.
@@ -90,16 +91,16 @@ public:
   template <class Item>
   std::vector<std::vector<Item>> gatherItems(const std::vector<Item>& own);
 
-  /// The same, one after the other.
+  /// The same, concatenated in the order of the ranks.
   template <class Item>
   std::vector<Item> exchangeJoined(const std::vector<std::vector<Item>>& sent);
   template <class Item>
   std::vector<Item> gatherJoined(const std::vector<Item>& own);
-  /// The same on the first rank; the others get none.
+  /// The same on the first rank only; the others receive an empty list.
   template <class Item>
   std::vector<Item> gatherOnFirst(const std::vector<Item>& own);
 
-  /// The text of the first rank.
+  /// The text of the first rank, on every rank.
   std::string fromFirst(const std::string& text);
   Index sum(Index value);
   double sum(double value); ///< in the order of the ranks
@@ -108,14 +109,15 @@ public:
   bool any(bool value);
   bool everywhere(bool value) { return !this->any(!value); }
   /// The sum of the values of all ranks and of all lists, rounded once: it depends neither on the
-  /// order of the values nor on the ranks they are on. Values that are not finite give NaN.
+  /// order of the values nor on their distribution over the ranks. Values that are not finite give
+  /// NaN.
   double orderlessSum(const std::vector<double>& values);
 
 protected:
-  /// As send(), on all ranks at once.
+  /// Implements send(), on all ranks at once.
   virtual void sendAll(
     const std::vector<RankMessage>& sent, std::vector<RankMessage>& received) = 0;
-  /// As allGather(), on all ranks at once.
+  /// Implements allGather(), on all ranks at once.
   virtual std::vector<Bytes> gatherAll(const Bytes& own) = 0;
   /// Whether a flag is set on any rank, on all ranks at once.
   virtual bool anyOfAll(bool flag);
@@ -124,7 +126,7 @@ private:
   void agreeOn(const std::string& failure, int depth);
 
   int Depth = 0;     ///< of calls of together()
-  bool Left = false; ///< by an interruption, of which all ranks know
+  bool Left = false; ///< after an interruption that all ranks have been notified of
 };
 
 /// This process alone.
@@ -186,7 +188,7 @@ std::vector<std::vector<Item>> RankGroup::gatherItems(const std::vector<Item>& o
   return all;
 }
 
-/// The items of lists, one after the other.
+/// The concatenated items of lists.
 template <class Item>
 std::vector<Item> joinLists(const std::vector<std::vector<Item>>& lists)
 {

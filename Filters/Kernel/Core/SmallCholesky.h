@@ -11,10 +11,10 @@
 
 namespace tautline
 {
-/// What a factor holds on its diagonal.
+/// The contents of the diagonal of a factor.
 enum class CholeskyDiagonal
 {
-  Root,       ///< that of L; solving divides by it: for one right-hand side
+  Root,       ///< the diagonal of L; solving divides by it: for one right-hand side
   InverseRoot ///< its inverse; solving multiplies by it: for many right-hand sides
 };
 
@@ -30,9 +30,9 @@ struct SmallCholesky
   /**
    * @brief Factors A + shift I.
    * @param A symmetric, only the lower triangle is read
-   * @param smallestPivot the pivots (before the root) have to exceed it
-   * @param L Entries numbers; incomplete if the result is false
-   * @return whether the matrix is positive definite, by these pivots
+   * @param smallestPivot the pivots (before the square root) must exceed it
+   * @param L array of `Entries` numbers; incomplete if the result is false
+   * @return whether the matrix is positive definite, judged by these pivots
    */
   static bool factor(const double (&A)[N][N], double shift, double smallestPivot, double* L)
   {

@@ -12,7 +12,7 @@
 
 namespace tautline
 {
-/// Runs from its construction on; a copy runs from the same start.
+/// Starts at its construction; a copy has the same start.
 class Stopwatch
 {
 public:

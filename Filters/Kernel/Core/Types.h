@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Types.h
- * @brief Small types every part of the kernel shares: indices, vectors, errors.
+ * @brief Small types shared by all parts of the kernel: indices, vectors, errors.
  */
 #ifndef tautline_Types_h
 #define tautline_Types_h
@@ -84,7 +84,7 @@ inline double cross(const Vec2& a, const Vec2& b)
   return a[0] * b[1] - a[1] * b[0];
 }
 
-/// What the kernel throws on input it cannot take. The message names the problem and the remedy.
+/// Thrown by the kernel for invalid input. The message states the problem and a remedy.
 class Error : public std::runtime_error
 {
 public:

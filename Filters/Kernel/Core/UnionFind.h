@@ -15,7 +15,7 @@
 
 namespace tautline
 {
-/// Disjoint sets; the root of a set is its smallest member, whatever the order of the joins.
+/// Disjoint sets; the root of a set is its smallest member, for any order of the joins.
 class UnionFind
 {
 public:
@@ -26,7 +26,7 @@ public:
     std::iota(this->Parent.begin(), this->Parent.end(), Index(0));
   }
 
-  /// The smallest member of the set of i; shortens the way for the next call.
+  /// The smallest member of the set of i; compresses the path for the next call.
   Index find(Index i)
   {
     while (this->Parent[i] != i)
@@ -36,7 +36,7 @@ public:
     return i;
   }
 
-  /// Makes one set of those of i and j.
+  /// Merges the sets of i and j.
   void join(Index i, Index j)
   {
     i = this->find(i);

@@ -15,10 +15,10 @@
 
 namespace tautline
 {
-/// In which order the sums that run side by side are added at the end of a chunk.
+/// The order in which the lane sums are added at the end of a chunk.
 enum class LaneOrder
 {
-  Sequential, ///< one after the other, to the entries beyond the last full set of lanes
+  Sequential, ///< one after the other, starting from the sum of the remaining entries
   Halves      ///< by halves, then those entries
 };
 
@@ -28,7 +28,7 @@ public:
   /**
    * @brief For vectors of `size` entries; threads as in Parallel.h.
    * @param group null, or ranks that each have a part of the vectors, of any size. The sums are
-   * then of the whole vectors, do not depend on how these are cut, and are collective.
+   * then over the whole vectors, independent of the distribution, and collective.
    */
   VectorAlgebra(std::size_t size, int threads, LaneOrder order = LaneOrder::Sequential,
     RankGroup* group = nullptr)
@@ -71,7 +71,7 @@ public:
     forEachChunk(this->Size, this->Threads,
       [&](Index chunk, Index begin, Index end)
       {
-        // Several sums side by side, for the vector units.
+        // Several independent sums, for vectorization.
         double sums[Lanes] = {};
         Index i = begin;
         for (; i + Lanes <= end; i += Lanes)
@@ -98,7 +98,7 @@ public:
   }
 
   /**
-   * @brief Sets a[i] = update(a[i], i) and returns a . b: with sequential lanes in one pass over
+   * @brief Sets a[i] = update(a[i], i) and returns a . b; with sequential lanes, in one pass over
    * memory.
    */
   template <class Update>
@@ -143,7 +143,7 @@ private:
   LaneOrder Order;
   RankGroup* Group;
   mutable std::vector<double> Partial;
-  mutable std::vector<double> Terms; ///< of a sum over ranks
+  mutable std::vector<double> Terms; ///< the terms of a sum over ranks
 };
 }
 #endif

@@ -7,7 +7,7 @@
 namespace tautline
 {
 
-/** The version of the kernel library that was loaded, "major.minor.patch". */
+/** The version of the loaded kernel library, "major.minor.patch". */
 TAUTLINE_KERNEL_EXPORT const char* version();
 
 } // namespace tautline

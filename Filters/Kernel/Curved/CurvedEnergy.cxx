@@ -117,8 +117,8 @@ void adjugateGradient(const Packet (&t)[Dim][Dim], Packet norm2, Packet (&g)[Dim
   }
 }
 
-/// Its change where T changes by dt and |T|^2 by dNorm2:
-/// 2 (dNorm2 T + |T|^2 dT - dT T^t T - T (dT^t T + T^t dT)).
+/// Its change if T changes by dt and |T|^2 by dNorm2: 2 (dNorm2 T + |T|^2 dT - dT T^t T - T (dT^t T
+/// + T^t dT)).
 template <int Dim>
 void adjugateGradientChange(const Packet (&t)[Dim][Dim], Packet norm2, const Packet (&dt)[Dim][Dim],
   Packet dNorm2, Packet (&change)[Dim][Dim])
@@ -234,6 +234,8 @@ void CurvedEnergy<Dim>::setItems(std::vector<SampleItem> items)
   }
   std::partial_sum(this->Offsets.begin(), this->Offsets.end(), this->Offsets.begin());
   this->Positions.resize(this->First.back());
+  // List the contributions of each point in item order, so that gather() sums them in a fixed
+  // order.
   std::vector<Index> next(this->Offsets.begin(), this->Offsets.end() - 1);
   for (std::size_t i = 0; i < this->Items.size(); ++i)
   {
@@ -278,7 +280,7 @@ void CurvedEnergy<Dim>::forEachItem(const Work& work)
 }
 
 //------------------------------------------------------------------------------
-/// A W^-1 of the ideal element, or with displacements in place of points its change.
+/// A W^-1 with the ideal element W; for displacements instead of points, its change.
 template <int Dim>
 void CurvedEnergy<Dim>::loadIdeal(
   const SampleItem& item, int packet, const double* x, Packet (&t)[Dim][Dim]) const
@@ -344,12 +346,13 @@ void CurvedEnergy<Dim>::load(
 }
 
 //------------------------------------------------------------------------------
-/// Adds what a derivative by T is by the nodes.
+/// Converts a derivative with respect to T to the nodes and adds it.
 template <int Dim>
 void CurvedEnergy<Dim>::addRow(
   const SampleItem& item, int packet, const Packet (&p)[Dim][Dim], std::vector<Packet>& sums) const
 {
   Packet own[Dim][Dim];
+  // Chain rule: from T to the Jacobian matrix, through the factors of the target.
   std::copy_n(&p[0][0], Dim * Dim, &own[0][0]);
   if (item.rooted)
   {
@@ -389,6 +392,7 @@ void CurvedEnergy<Dim>::addRow(
       entry *= item.perSize;
     }
   }
+  // From the Jacobian matrix to the nodes, by the gradients of their functions.
   const Packet* g = item.table->gradients(packet);
   const int nodes = item.table->nodes();
   for (int n = 0; n < nodes; ++n)
@@ -501,7 +505,7 @@ double CurvedEnergy<Dim>::linearize(const SampleFunction<Dim>& function,
         const TargetInvariants<Dim> t = invariantsOf<Dim>(kept.t, cofactors, this->Adjugate);
         SampleTerm term;
         function.curvatures(t, term);
-        // Lanes without weight, and those whose value is not finite, take no part.
+        // Lanes without weight or with a nonfinite value are excluded.
         const Packet w = item.weight * item.table->weights(p);
         const Mask counts = w > 0.0;
         energy += select(counts, w * term.value, Packet{});
@@ -568,8 +572,8 @@ double CurvedEnergy<Dim>::linearize(const SampleFunction<Dim>& function,
 }
 
 //------------------------------------------------------------------------------
-/// The second derivatives by one node in the directions u: T changes by u g^t, and det T is linear
-/// in u.
+/// The second derivatives with respect to one node in the directions u: T changes by u g^t, and det
+/// T is linear in u.
 template <int Dim>
 void CurvedEnergy<Dim>::addDiagonal(
   const SampleItem& item, int packet, const Kept& kept, std::vector<Packet>& sums) const
@@ -616,7 +620,7 @@ void CurvedEnergy<Dim>::addDiagonal(
       g[c] *= item.perSize;
       square += g[c] * g[c];
     }
-    // The changes of the invariants by u.
+    // The changes of the invariants along u.
     Packet change[NumberOfInvariants][Dim], stretch = {};
     for (int r = 0; r < Dim; ++r)
     {
@@ -673,7 +677,7 @@ void CurvedEnergy<Dim>::addDiagonal(
 }
 
 //------------------------------------------------------------------------------
-/// The change of the derivative by T where T changes by dt.
+/// The change of the derivative with respect to T if T changes by dt.
 template <int Dim>
 void CurvedEnergy<Dim>::changeOf(
   const Kept& kept, const Packet (&dt)[Dim][Dim], Packet (&derivative)[Dim][Dim]) const
@@ -741,7 +745,7 @@ void CurvedEnergy<Dim>::apply(const std::vector<double>& d, std::vector<double>&
 }
 
 //------------------------------------------------------------------------------
-/// Sets the value of each item to its least determinant.
+/// Sets the value of each item to its smallest determinant.
 template <int Dim>
 template <class Load>
 void CurvedEnergy<Dim>::findLeast(const std::vector<double>& x, const Load& load)
@@ -853,7 +857,7 @@ SampleRange CurvedEnergy<Dim>::range(
       ++count;
     }
   }
-  this->Values = last; // those of the energy
+  this->Values = last; // restore the values of the energy
   range.mean = count > 0 ? range.mean / static_cast<double>(count) : 0;
   range.largest = count > 0 ? range.largest : 0;
   return range;

@@ -6,7 +6,7 @@
  * Internal: not installed.
  *
  * E = sum over items, their samples q: weight w_q f(T_q), T = M^(1/2) A W^-1, A the Jacobian of the
- * map. Hessians are applied without a matrix: by sample, from T and the derivatives of f.
+ * map. Hessians are applied matrix-free, sample by sample, from T and the derivatives of f.
  */
 #ifndef tautline_CurvedEnergy_h
 #define tautline_CurvedEnergy_h
@@ -21,7 +21,7 @@ namespace tautline
 struct CurvedElement
 {
   const ElementType* type;
-  bool mirrored; ///< taken for its mirror image
+  bool mirrored; ///< treated as its mirror image
   Index cell;    ///< of the mesh
   std::vector<Index> nodes;
 };
@@ -31,19 +31,19 @@ struct SampleItem
 {
   Index element;
   std::shared_ptr<const SampleTable> table;
-  double weight = 1;  ///< of all its samples; 0: left out
+  double weight = 1;  ///< of all its samples together; 0: excluded
   double perSize = 1; ///< T is multiplied by it
-  /// What stands right of T: dimension^2 packets per packet of the table, row by row; or empty.
+  /// The right factor of T: dimension^2 packets per packet of the table, row by row; or empty.
   std::vector<Packet> targets;
-  /// What stands left of T, symmetric; used where `rooted`.
+  /// The left factor of T, symmetric; used if `rooted`.
   SmallMatrix root = {};
   bool rooted = false;
 };
 
-/// A block of the Hessian's diagonal, of one point.
+/// The diagonal block of the Hessian for one point.
 using PointBlock = std::array<std::array<double, 3>, 3>;
 
-/// Of the values of a function at samples.
+/// The range of the values of a function at samples.
 struct SampleRange
 {
   double mean, largest;
@@ -51,33 +51,33 @@ struct SampleRange
 
 /**
  * @class CurvedEnergy
- * @brief Points are 3 coordinates each, of which the first Dim count.
+ * @brief Points have 3 coordinates each, of which the first Dim are used.
  */
 template <int Dim>
 class CurvedEnergy
 {
 public:
-  /// All must outlive the energy.
+  /// All arguments must outlive the energy.
   CurvedEnergy(const std::vector<CurvedElement>& elements, Index points, int threads);
 
-  /// Replaces the samples. Elements without an item do not count.
+  /// Replaces the samples. Elements without an item are ignored.
   void setItems(std::vector<SampleItem> items);
   const std::vector<SampleItem>& items() const { return this->Items; }
   /// Multiplies the weights of the items from a position on.
   void scaleWeights(std::size_t first, double factor);
   void addItems(const std::vector<SampleItem>& items);
 
-  /// Infinite where a sample has no value.
+  /// Infinite if the function is undefined at a sample.
   double value(const SampleFunction<Dim>& function, const std::vector<double>& x);
   /// The share of the first items in the last value.
   double partialValue(std::size_t items) const;
-  /// The energy, its gradient, and what apply() and the blocks need.
+  /// The energy and its gradient; prepares apply() and the blocks.
   double linearize(const SampleFunction<Dim>& function, const std::vector<double>& x,
     std::vector<double>& gradient, std::vector<PointBlock>& diagonal);
-  /// The product of the Hessian with d, at the last place of linearize().
+  /// The product of the Hessian with d, at the last argument of linearize().
   void apply(const std::vector<double>& d, std::vector<double>& product);
 
-  /// Of the first items, those with weight.
+  /// Covers the first items with nonzero weight.
   SampleRange range(
     const SampleFunction<Dim>& function, const std::vector<double>& x, std::size_t items);
   /// The means of |A W^-1|^2 over the samples of each item.
@@ -89,7 +89,7 @@ public:
   std::vector<double> leastJacobians(const std::vector<double>& x);
 
 private:
-  /// What is kept of a packet of samples between linearize() and apply().
+  /// The data of a packet of samples kept between linearize() and apply().
   struct Kept
   {
     Packet t[Dim][Dim];

@@ -11,8 +11,8 @@ namespace
 {
 constexpr Index ElementsPerChunk = 256;
 
-/// How near the bounds of a minimum are to each other, relative to the largest coefficient: where
-/// only its place is wanted, and where it is compared with what samples have.
+/// The tolerance between the bounds of a minimum, relative to the largest coefficient: for finding
+/// its location, and for comparing it with the samples.
 constexpr double PlaceTolerance = 1e-2, LevelTolerance = 1e-6;
 }
 
@@ -29,7 +29,8 @@ CurvedGuard::CurvedGuard(const std::vector<CurvedElement>& elements, int dimensi
 }
 
 //------------------------------------------------------------------------------
-/// @param judge of a certifier and an element: whether it is good, else the place
+/// @param judge called with a certifier and an element: returns whether it is acceptable, or the
+///   weak location
 template <class Judge>
 std::vector<WeakPlace> CurvedGuard::find(const std::vector<double>& x, const Judge& judge) const
 {

@@ -14,7 +14,7 @@
 
 namespace tautline
 {
-/// A place at which an element has not enough of a Jacobian.
+/// A location in an element where the Jacobian determinant is too small.
 struct WeakPlace
 {
   Index element;
@@ -24,22 +24,22 @@ struct WeakPlace
 class CurvedGuard
 {
 public:
-  /// @param elements must outlive this
+  /// @param elements must outlive this object
   CurvedGuard(const std::vector<CurvedElement>& elements, int dimension, int threads);
 
-  /// The places of the smallest determinants of the elements that are not valid.
+  /// The locations of the smallest determinants of the invalid elements.
   std::vector<WeakPlace> invalid(const std::vector<double>& x) const;
 
   /**
-   * @brief The places of the smallest determinants that are not represented by samples: at most 0,
-   * or below LeastShare of what the samples of the element have at least.
+   * @brief The locations of the smallest determinants that the samples do not represent: at most 0,
+   * or below LeastShare times the minimum over the samples of the element.
    * @param sampled by element, see CurvedEnergy::leastJacobians()
-   * @param lower null, or gets a lower bound of the smallest determinant of each element
+   * @param lower null, or receives a lower bound of the smallest determinant of each element
    */
   std::vector<WeakPlace> notRepresented(const std::vector<double>& x,
     const std::vector<double>& sampled, std::vector<double>* lower = nullptr) const;
   static constexpr double LeastShare = 0.2;
-  /// The weight of a place that becomes a sample: share of its element.
+  /// The weight of an added sample location, as a fraction of its element.
   static constexpr double PlaceShare = 0.2;
 
 private:

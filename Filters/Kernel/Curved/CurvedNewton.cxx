@@ -67,7 +67,7 @@ void CurvedNewton<Dim>::linearize(const std::vector<double>& x, const NewtonLimi
         matrix(i, j) = block[i][j];
       }
     }
-    // An indefinite block is replaced by its size.
+    // An indefinite block is replaced by its norm.
     const Eigen::LLT<Eigen::Matrix<double, Dim, Dim>> factors(matrix);
     const double size = std::max(matrix.norm(), std::numeric_limits<double>::min());
     Eigen::Matrix<double, Dim, Dim> inverse = Eigen::Matrix<double, Dim, Dim>::Identity() / size;
@@ -83,6 +83,8 @@ void CurvedNewton<Dim>::linearize(const std::vector<double>& x, const NewtonLimi
       }
     }
   }
+  // Preconditioned conjugate gradients on the permitted displacements; negative curvature ends
+  // them, with the preconditioned gradient as the direction if it occurs at the start.
   std::vector<double> r(this->Gradient.size()), z, d, hd;
   std::transform(this->Gradient.begin(), this->Gradient.end(), r.begin(), std::negate<double>());
   this->Direction.assign(r.size(), 0.0);
@@ -144,9 +146,9 @@ double CurvedNewton<Dim>::search(
 }
 
 //------------------------------------------------------------------------------
-/// Where facets of the surface meet at a ridge, a point on it goes down on either side. Holds the
-/// points whose last steps raise the energy though their tangents promised the contrary.
-/// @return whether there are any
+/// A point on a ridge between facets moves down on either side. This function holds the points
+/// whose last steps increase the energy although their tangents predicted a decrease.
+/// @return whether there are such points
 template <int Dim>
 bool CurvedNewton<Dim>::holdRidges(const std::vector<double>& from, const std::vector<double>& x)
 {

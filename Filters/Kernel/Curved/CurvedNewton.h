@@ -20,15 +20,16 @@ struct NewtonLimits
 
 /**
  * @class CurvedNewton
- * @brief Newton's directions by conjugate gradients, preconditioned by the blocks of the points,
- * and ended where the curvature is not positive (T. Steihaug, "The conjugate gradient method and
+ * @brief Newton's directions by conjugate gradients, preconditioned with the diagonal blocks of the
+ * points and stopped at nonpositive curvature (T. Steihaug, "The conjugate gradient method and
  * trust regions in large scale optimization", 1983).
  */
 template <int Dim>
 class CurvedNewton
 {
 public:
-  /// All must outlive this. The points of x are on what they slide on.
+  /// All arguments must outlive this object. The points of x lie on the surfaces or curves on which
+  /// they slide.
   CurvedNewton(CurvedSum<Dim>& energy, CurvedSlides& slides, int threads)
     : Energy(energy)
     , Slides(slides)
@@ -36,19 +37,19 @@ public:
   {
   }
 
-  /// Finds energy, gradient and direction at x.
+  /// Computes the energy, the gradient, and the direction at x.
   void linearize(const std::vector<double>& x, const NewtonLimits& limits);
   double energy() const { return this->Value; }
   double gradientNorm() const { return this->GradientNorm; }
-  /// The slope of the energy along the direction; negative, or 0 where there is none.
+  /// The slope of the energy along the direction; negative, or 0 if there is no descent direction.
   double slope() const { return this->Slope; }
 
   /**
-   * @brief Goes along the direction until the energy has fallen as the slope promises (Armijo).
-   * @param step the first step length; gets the one of the result
-   * @param x gets the new points
-   * @return the energy there, or infinity if no step does; then, after some points were held (see
-   * CurvedSlides::hold()), linearize() finds another direction
+   * @brief Searches along the direction for a sufficient decrease of the energy (Armijo).
+   * @param step the first step length; receives the final one
+   * @param x receives the new points
+   * @return the energy there, or infinity if no step is sufficient; then, after some points were
+   * held (see CurvedSlides::hold()), linearize() finds another direction
    */
   double search(const std::vector<double>& from, double& step, std::vector<double>& x);
 
@@ -60,7 +61,7 @@ private:
   CurvedSlides& Slides;
   int Threads;
   double Value = 0, GradientNorm = 0, Slope = 0;
-  std::vector<double> Full; ///< the gradient, also across what points slide on
+  std::vector<double> Full; ///< the gradient, including components normal to sliding surfaces
   std::vector<double> Gradient, Direction;
   std::vector<PointBlock> Inverse;
 };

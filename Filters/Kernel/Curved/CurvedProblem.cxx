@@ -15,8 +15,8 @@ CurvedProblem::CurvedProblem(const Mesh& mesh, const CurvedOptions& options)
 {
   if (mesh.dimension() == Dimension::Surface)
   {
-    throw Error("Curved cells of a surface in space do not move: reduce them to order 1 (Curve "
-                "Mesh), or extract a part in a plane.");
+    throw Error("Curved cells of a surface in space are not supported: reduce them to order 1 "
+                "(Curve Mesh), or extract a planar part.");
   }
   const MeshView& view = mesh.view();
   Index elements = 0;
@@ -39,7 +39,7 @@ CurvedProblem::CurvedProblem(const Mesh& mesh, const CurvedOptions& options)
   if (supported > elements)
   {
     throw Error(std::to_string(supported - elements) +
-      " curved cells are of a kind that cannot be certified (Lagrange pyramids, Bezier cells with "
+      " curved cells are of a type that cannot be certified (Lagrange pyramids, Bezier cells with "
       "weights, orders above " +
       std::to_string(MaxElementOrder) +
       "): reduce the mesh to order 1 (Curve Mesh), or remove them.");
@@ -132,8 +132,8 @@ const SlidingBoundary& CurvedProblem::boundary()
 }
 
 //------------------------------------------------------------------------------
-/// Finds for each patch, and each curve, of the boundary that of the geometry which its points are
-/// nearest to.
+/// Finds, for each patch and curve of the boundary, the patch or curve of the geometry nearest to
+/// its points.
 void CurvedProblem::matchGeometry()
 {
   if (!this->Options.geometry || !this->Geometry.empty())
@@ -142,7 +142,7 @@ void CurvedProblem::matchGeometry()
   }
   if (this->Dimension == 2)
   {
-    throw Error("The geometry of curved cells in a plane is not supported: choose Boundary on "
+    throw Error("A Geometry for curved cells in a plane is not supported: choose Boundary on "
                 "surface without a Geometry, which keeps the curved outline.");
   }
   for (const SurfacePart& part : this->Options.geometry->parts)
@@ -280,7 +280,7 @@ void CurvedProblem::makeSlides(CurvedRegion& region, const std::vector<char>& he
       const double* x = region.x.data() + 3 * p;
       if (geometry < 0 && !std::equal(x, x + 3, this->Start.begin() + 3 * global))
       {
-        // It has slid to another piece.
+        // The point has slid to another piece.
         piece = boundary->closestOfPart(boundary->pieces()[piece].part, { x[0], x[1], x[2] }).piece;
       }
       geometry < 0 ? region.slides->slide(p, *boundary, piece)

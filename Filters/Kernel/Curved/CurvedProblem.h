@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CurvedProblem.h
- * @brief The elements and points of a mesh with curved cells, and regions of it that are worked on.
+ * @brief The elements and points of a mesh with curved cells, and the regions that are processed.
  * Internal: not installed.
  */
 #ifndef tautline_CurvedProblem_h
@@ -13,12 +13,12 @@
 
 namespace tautline
 {
-/// Some elements, with points numbered among themselves.
+/// Some elements, with local point numbers.
 struct CurvedRegion
 {
   std::vector<CurvedElement> elements;
   std::vector<Index> points; ///< of the mesh
-  std::vector<double> x;     ///< 3 coordinates per point, in a plane in its frame
+  std::vector<double> x;     ///< 3 coordinates per point; for a planar mesh, in its frame
   std::unique_ptr<CurvedSlides> slides;
   Index free = 0; ///< points that are not fixed
 };
@@ -27,7 +27,7 @@ class CurvedProblem
 {
 public:
   /**
-   * @brief All cells of the dimension of the mesh, linear ones too.
+   * @brief All cells of the dimension of the mesh, including linear ones.
    * @throws Error with the remedy for surfaces in space, cells that ElementType does not support,
    * and arrays that are out of range
    */
@@ -35,23 +35,23 @@ public:
 
   int dimension() const { return this->Dimension; }
   const std::vector<CurvedElement>& elements() const { return this->Elements; }
-  /// Coordinates in the frame of a plane, else of the mesh.
+  /// Coordinates in the frame of a planar mesh, otherwise the mesh coordinates.
   std::vector<double>& x() { return this->X; }
-  /// Coordinates of the mesh, 3 per point, in that frame.
+  /// Converts mesh coordinates, 3 per point, to that frame.
   std::vector<double> inFrame(const double* points) const;
-  /// As coordinates of the mesh; points that have not moved keep theirs.
+  /// In mesh coordinates; points that have not moved keep their original coordinates.
   std::vector<double> points() const;
   std::vector<double> points(const std::vector<double>& x) const;
   const CurvedGuard& guard() const { return *this->Guard; }
   const SlidingBoundary& boundary();
 
   /**
-   * @brief The elements within some rings around others, and what their points may do: those of
-   * elements outside stay.
+   * @brief The elements within some rings around the given ones, and the constraints on their
+   * points: points shared with outside elements are fixed.
    * @param rings below 0: all elements of the mesh
    */
   CurvedRegion region(const std::vector<WeakPlace>& around, int rings);
-  /// Takes the points of a region over.
+  /// Copies the points of a region back.
   void take(const CurvedRegion& region, const std::vector<double>& x);
 
 private:

@@ -80,6 +80,7 @@ Vec3 CurvedSlides::along(const Point& point, const Vec3& v)
     return { 0, 0, 0 };
   }
   const Vec3& d = point.place.direction;
+  // The direction is the tangent of a curve or the normal of a surface.
   const Vec3 part = dot(d, v) * d;
   return point.curve ? part : v - part;
 }

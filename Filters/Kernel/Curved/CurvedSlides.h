@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CurvedSlides.h
- * @brief What the points of curved elements may do: stay, move, or slide.
- * Internal: not installed.
+ * @brief Constraints on the points of curved elements: fixed, free, or sliding. Internal: not
+ * installed.
  */
 #ifndef tautline_CurvedSlides_h
 #define tautline_CurvedSlides_h
@@ -23,13 +23,13 @@ public:
   /// All points are free at first.
   void fix(Index p) { this->Points[p].kind = Kind::Fixed; }
   bool isFixed(Index p) const { return this->Points[p].kind == Kind::Fixed; }
-  /// @param piece where the point is; the boundary must outlive this
+  /// @param piece the piece that contains the point; the boundary must outlive this object
   void slide(Index p, const SlidingBoundary& boundary, Index piece);
-  /// @param surface must outlive this
+  /// @param surface must outlive this object
   void slide(Index p, const SurfaceProjection& surface);
   bool slides(Index p) const { return this->Points[p].kind >= Kind::OnPiece; }
 
-  /// Lets a point that slides stay until release().
+  /// Fixes a sliding point until release().
   void hold(Index p)
   {
     this->Points[p].held = true;
@@ -39,13 +39,13 @@ public:
   Index held() const { return this->Held; }
   void release();
 
-  /// Takes points that slide to the closest places.
+  /// Moves sliding points to the closest positions.
   void place(std::vector<double>& x, int threads);
-  /// Makes the last places those by which project() knows the directions.
+  /// Makes the last positions the basis for the directions of project().
   void accept();
-  /// What the points may follow of a vector, 3 numbers each.
+  /// Projects a vector, 3 numbers per point, onto the allowed directions.
   void project(std::vector<double>& v) const;
-  /// The part of a block of the Hessian that acts on it, and 1 on what is left out.
+  /// Restricts a Hessian block to the allowed directions, with 1 for the others.
   void project(Index p, PointBlock& block) const;
 
 private:
@@ -65,7 +65,7 @@ private:
     const SurfaceProjection* surface = nullptr;
     CurvedPlace place, tried;
   };
-  /// Of a normal or tangent what is left of v.
+  /// The component of v that a normal or tangent allows.
   static Vec3 along(const Point& point, const Vec3& v);
 
   std::vector<Point> Points;

@@ -14,7 +14,7 @@
 
 namespace tautline
 {
-/// One energy. It is E, or of a p-mean (E / totalWeight)^(1/p).
+/// One energy. Its value is E, or (E / totalWeight)^(1/p) for a p-mean.
 template <int Dim>
 struct CurvedTerm
 {
@@ -33,14 +33,14 @@ struct CurvedTerm
   }
 };
 
-/// F of the values of the terms, and its slopes by these where wanted.
+/// F as a function of the values of the terms; also returns its derivatives if requested.
 using CurvedScalarization =
   std::function<double(const std::vector<double>& values, std::vector<double>* slopes)>;
 
 /**
  * @class CurvedSum
- * @brief F(E_1, E_2, ...). Its Hessian is taken for the sum of the Hessians of the terms, each
- * times dF/dE.
+ * @brief F(E_1, E_2, ...). Its Hessian is approximated by the sum of the Hessians of the terms,
+ * each times dF/dE.
  */
 template <int Dim>
 class CurvedSum
@@ -55,7 +55,7 @@ public:
   double linearize(
     const std::vector<double>& x, std::vector<double>& gradient, std::vector<PointBlock>& diagonal);
   void apply(const std::vector<double>& d, std::vector<double>& product);
-  /// The values of the terms at the last place, of their first items only.
+  /// The values of the terms at the last argument, for their first items only.
   std::vector<double> values(std::size_t items) const;
   double combined(const std::vector<double>& values) const;
 

@@ -238,13 +238,13 @@ Faces wedgeFaces()
   };
 }
 
-/// u or v of the collapsed cube at a height b, from the coordinate a of the pyramid.
+/// The coordinate u or v of the collapsed cube at height b, from the coordinate a of the pyramid.
 double collapsed(double a, double b)
 {
   return b < 1 ? std::min(a / (1 - b), 1.0) : 0;
 }
 
-/// Its apex is on all sides.
+/// The apex is on all side faces.
 Faces pyramidFaces()
 {
   return {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ElementFaces.h
- * @brief The faces of reference elements, and in two dimensions the edges, with coordinates s and t
- * of their own.
- * Internal: not installed.
+ * @brief The faces (in two dimensions, the edges) of reference elements, with local coordinates s
+ * and t. Internal: not installed.
  */
 #ifndef tautline_ElementFaces_h
 #define tautline_ElementFaces_h
@@ -14,20 +13,21 @@ namespace tautline
 {
 struct ElementFace
 {
-  bool triangle; ///< over s, t >= 0, s + t <= 1; else over the unit square or, of edges, interval
-  /// From s and t to the coordinates of the element.
+  /// over s, t >= 0, s + t <= 1; otherwise over the unit square or, for edges, the unit interval
+  bool triangle;
+  /// Maps s and t to the coordinates of the element.
   Vec3 (*place)(double s, double t);
   /// The distance of coordinates of the element from the face; not negative within the element.
   double (*distance)(const Vec3& at);
-  /// From a place on the face to s and t.
+  /// Maps a position on the face to s and t.
   Vec2 (*coordinates)(const Vec3& at);
-  /// The position in BernsteinSpace::factors() that the degree along s, and t, is that of.
+  /// The indices in BernsteinSpace::factors() of the degrees along s and t.
   int factors[2];
 };
 
 const std::vector<ElementFace>& facesOf(ElementShape shape);
 
-/// How near to a face a node is that lies on it.
+/// The largest distance of a node on a face from the face.
 constexpr double OnFaceTolerance = 1e-9;
 }
 #endif

@@ -19,14 +19,14 @@ namespace
 {
 constexpr int IterationsOfHolding = 8; ///< after which points that were held move again
 constexpr double WeightReduction = 0.1;
-constexpr int Reductions = 3; ///< of the weights of added places, before they are dropped
+constexpr int Reductions = 3; ///< of the weights of added samples before they are dropped
 
-/// W^-1 times the W of the ideal element, and M^(1/2), of the elements of an objective.
+/// W^-1 times the ideal W, and M^(1/2), for the elements of an objective.
 template <int Dim>
 class CurvedTargets
 {
 public:
-  /// @param reference in a plane in its frame
+  /// @param reference for a planar mesh, in its frame
   CurvedTargets(const Mesh& mesh, const CurvedObjective& objective, std::vector<double> reference,
     const CurvedRegion& region)
     : TheMesh(mesh)
@@ -37,7 +37,7 @@ public:
     if (objective.target != TargetType::Ideal && !objective.data)
     {
       throw Error(
-        "The target of an objective has no data: give sizes, tensors or reference points.");
+        "The target of an objective has no data: provide sizes, tensors or reference points.");
     }
   }
 
@@ -105,7 +105,7 @@ private:
     }
   }
 
-  /// T = A (A_reference)^-1 = (A W^-1) (A_reference W^-1)^-1, W of the ideal element.
+  /// T = A (A_reference)^-1 = (A W^-1) (A_reference W^-1)^-1, with the ideal element W.
   void applyReference(SampleItem& item, const CurvedElement& element) const
   {
     const SampleTable& table = *item.table;
@@ -127,7 +127,9 @@ private:
             }
           }
         }
-        this->require(t.determinant() > 0, element.cell, "that of the reference mesh is not valid");
+        this->require(t.determinant() > 0, element.cell,
+          "the element of the reference mesh is "
+          "not valid");
         inverse[l] = t.inverse();
       }
       for (int r = 0; r < Dim; ++r)
@@ -193,8 +195,8 @@ private:
   CurvedProblem Problem;
   Stopwatch Clock;
   CurvedOptimizeResult Result;
-  std::vector<WeakPlace> Invalid; ///< elements left out, of the mesh
-  std::size_t Items = 0;          ///< those of the quadrature
+  std::vector<WeakPlace> Invalid; ///< excluded elements of the mesh
+  std::size_t Items = 0;          ///< items of the quadrature
   std::unique_ptr<Scalarizer> TheScalarizer;
 };
 
@@ -208,6 +210,7 @@ CurvedSum<Dim> CurvedOptimization::makeSum(
   for (std::size_t e = 0; e < region.elements.size(); ++e)
   {
     const CurvedElement& element = region.elements[e];
+    // Elements of the same type share a table of samples.
     auto& table = tables[{ element.type, element.mirrored }];
     if (!table)
     {
@@ -308,7 +311,7 @@ void CurvedOptimization::addPlaces(
 }
 
 //------------------------------------------------------------------------------
-/// Adds the record of x, where the sum was linearized. @return false if the work is to end
+/// Adds the record of x, where the sum was linearized. @return false to stop
 template <int Dim>
 bool CurvedOptimization::proceed(CurvedSum<Dim>& sum, const CurvedRegion& region,
   const std::vector<double>& x, double gradientNorm)
@@ -428,7 +431,7 @@ private:
 };
 
 //------------------------------------------------------------------------------
-/// Of elements that count.
+/// Covers the elements that are not excluded.
 template <int Dim>
 std::vector<WeakPlace> CurvedOptimization::Descent<Dim>::notRepresented(
   const std::vector<double>& x, std::vector<double>& lower)
@@ -461,7 +464,7 @@ void CurvedOptimization::Descent<Dim>::prepareScalarization()
 }
 
 //------------------------------------------------------------------------------
-/// After a step. @return false if the work is to end
+/// Called after a step. @return false if the work is to end
 template <int Dim>
 bool CurvedOptimization::Descent<Dim>::record()
 {
@@ -470,7 +473,7 @@ bool CurvedOptimization::Descent<Dim>::record()
     this->FirstNorm = this->Newton.gradientNorm();
     this->FirstObjective = this->Objective;
   }
-  // The places that are added are no part of the objective, which may rise for their sake.
+  // Added samples are not part of the objective, which may increase because of them.
   if (this->Objective < this->BestObjective)
   {
     this->Best = this->X;
@@ -513,8 +516,8 @@ bool CurvedOptimization::Descent<Dim>::isConverged()
 }
 
 //------------------------------------------------------------------------------
-/// Whether there is more to do where the function has a minimum: points that were held move again,
-/// and the places that were added lose their weights.
+/// Whether to continue at a minimum of the function: held points are released, and the weights of
+/// added samples are reduced.
 template <int Dim>
 bool CurvedOptimization::Descent<Dim>::continuesAfter()
 {
@@ -551,7 +554,7 @@ typename CurvedOptimization::template Descent<Dim>::Outcome CurvedOptimization::
       break;
     }
     const std::vector<WeakPlace> places = this->notRepresented(this->Trial, lower);
-    // An element whose smallest determinant has not fallen may go on without representation.
+    // An element whose smallest determinant has not decreased needs no added sample.
     const auto isWorse = [&](const WeakPlace& place)
     {
       const double now = lower[place.element];
@@ -585,7 +588,8 @@ void CurvedOptimization::Descent<Dim>::run()
     result.reason = StopReason::NoFreeVertices;
     return;
   }
-  // Places where the mesh given has less than its samples show are samples from the start.
+  // Locations in the input mesh with smaller determinants than at the samples become samples from
+  // the start.
   this->Owner.addPlaces(this->Sum, this->Region, this->notRepresented(this->X, this->Least));
   bool moved = true;
   for (;;)
@@ -675,7 +679,7 @@ CurvedOptimizeResult CurvedOptimization::run()
 {
   if (this->Options.objectives.empty())
   {
-    throw Error("There is no objective: give at least one.");
+    throw Error("There is no objective: specify at least one.");
   }
   const CurvedGuard& guard = this->Problem.guard();
   const std::vector<WeakPlace> first = guard.invalid(this->Problem.x());

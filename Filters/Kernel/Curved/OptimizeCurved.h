@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file OptimizeCurved.h
- * @brief Moves all nodes of a mesh with curved elements so that objectives become smaller.
+ * @brief Moves all nodes of a mesh with curved elements to reduce objectives.
  *
- * An objective is the sum over elements of the mean of q^2 (or what its template makes of the
- * metric q) over the samples of a quadrature with positive weights, see SampleTable.h; that of
- * linear elements has the power of the mean over the corners. Newton's method minimizes it, with
+ * An objective is the sum over elements of the mean of q^2 (or another template of the metric q)
+ * over the samples of a quadrature with positive weights, see SampleTable.h; for linear elements,
+ * the template is applied to the mean over the corners. Newton's method minimizes it, with
  * conjugate gradients for the linear systems.
  *
- * After each step the Jacobian determinants are certified. A step is taken if the smallest one of
- * each element is positive and at least LeastShare of the smallest at the samples of the element;
- * where it is not, the place becomes a sample with the same metric, so that a barrier keeps it
- * away, and the step is computed again. Near the minimum the weights of these samples are reduced
- * to nothing, as interior point methods reduce theirs.
+ * After each step the Jacobian determinants are certified. A step is accepted if the smallest
+ * determinant in each element is positive and at least LeastShare times the smallest at the samples
+ * of the element. Otherwise, the location becomes a sample with the same metric, which acts as a
+ * barrier, and the step is computed again. Near the minimum, the weights of these samples are
+ * reduced to zero, as in interior-point methods.
  */
 #ifndef tautline_OptimizeCurved_h
 #define tautline_OptimizeCurved_h
@@ -38,11 +38,11 @@ struct CurvedOptimizeOptions : CurvedOptions
 {
   std::vector<CurvedObjective> objectives = std::vector<CurvedObjective>(1);
   ScalarizationOptions scalarization;
-  /// Of these maximumIterations, maximumSeconds (instead of that of CurvedOptions), gradientNorm,
-  /// relativeChange, and reduction with bestKnown count.
+  /// Used: maximumIterations, maximumSeconds (instead of CurvedOptions::maximumSeconds),
+  /// gradientNorm, relativeChange, and reduction with bestKnown.
   StoppingCriteria stopping;
-  /// What to do with invalid elements: untangleCurved() first (on); else, and where some remain,
-  /// objectives that are infinite on them leave them out.
+  /// How to treat invalid elements: if on, untangleCurved() is called first. Remaining invalid
+  /// elements are excluded from objectives that are infinite on them.
   bool untangleFirst = true;
 };
 
@@ -55,15 +55,15 @@ struct CurvedOptimizeResult
   Index freePoints = 0;
   Index invalidBefore = 0, invalidAfter = 0, newlyInvalid = 0;
   bool untangled = false;
-  Index addedSamples = 0;       ///< places that had to be represented
-  std::vector<Index> remaining; ///< the cells that are not valid
+  Index addedSamples = 0;       ///< locations added as samples
+  std::vector<Index> remaining; ///< the invalid cells
 };
 
 /**
  * @brief Optimizes. The objective does not rise, and no valid element becomes invalid at any step.
- * @param mesh with all cells; of volumes, or in a plane
- * @throws Error with the remedy for metrics and templates that curved elements do not have, see
- * sampleFunction(), and as untangleCurved() does
+ * @param mesh with all cells; a volume mesh or a planar mesh
+ * @throws Error with the remedy for metrics and templates that curved elements do not support, see
+ * sampleFunction(), and in the cases of untangleCurved()
  */
 TAUTLINE_KERNEL_EXPORT CurvedOptimizeResult optimizeCurved(
   const Mesh& mesh, const CurvedOptimizeOptions& options);
@@ -71,16 +71,16 @@ TAUTLINE_KERNEL_EXPORT CurvedOptimizeResult optimizeCurved(
 /// The value of an objective of curved elements, and its derivatives.
 struct CurvedObjectiveValue
 {
-  double value = 0; ///< infinite where a sample has none
-  /// 3 per point; in a plane along the axes of Mesh::frame(), third 0.
+  double value = 0; ///< infinite if it is undefined at a sample
+  /// 3 per point; for a planar mesh, along the axes of Mesh::frame(), third 0.
   std::vector<double> gradient;
-  std::vector<double> product; ///< of the Hessian with a vector, as the gradient
+  std::vector<double> product; ///< of the Hessian with a vector, laid out like the gradient
 };
 
 /**
  * @brief Evaluates an objective on all elements.
- * @param direction null, or the vector of the product, as the gradient
- * @throws Error as optimizeCurved() does
+ * @param direction null, or the vector of the product, laid out like the gradient
+ * @throws Error in the cases of optimizeCurved()
  */
 TAUTLINE_KERNEL_EXPORT CurvedObjectiveValue evaluateCurvedObjective(const Mesh& mesh,
   const CurvedCellFacts& facts, const CurvedObjective& objective, const double* direction);

@@ -28,7 +28,7 @@ TargetInvariants<Dim> fromArray(const std::array<Packet, NumberOfInvariants>& va
   return t;
 }
 
-/// The term of an objective on a value of its metric, and its first two derivatives.
+/// The term of an objective as a function of its metric value, with its first two derivatives.
 struct Outer
 {
   Packet value, first, second;
@@ -196,8 +196,8 @@ std::unique_ptr<const SampleFunction<Dim>> sampleFunction(const Objective& objec
   if (!function)
   {
     throw Error(name +
-      " cannot be an objective of curved elements: choose one that is a function of the Jacobian "
-      "matrix, as imr, or reduce the cells to their corners (Curve Mesh, order 1).");
+      " cannot be an objective of curved elements: choose a function of the Jacobian matrix, "
+      "such as imr, or reduce the cells to their corners (Curve Mesh, order 1).");
   }
   return function;
 }

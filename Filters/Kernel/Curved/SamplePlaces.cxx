@@ -12,7 +12,7 @@ namespace tautline
 {
 namespace
 {
-/// Places between 0 and 1 and weights that add up to 1.
+/// Points between 0 and 1, and weights that add up to 1.
 using LineRule = std::vector<std::pair<double, double>>;
 
 double fromUnit(double x)
@@ -61,7 +61,7 @@ LineRule gaussJacobi(int n, int alpha, int beta)
   return normalized(rule);
 }
 
-/// With both ends: the inner places are the zeros of the derivative of Legendre's polynomial.
+/// Includes both ends; the inner points are the zeros of the derivative of the Legendre polynomial.
 LineRule gaussLobatto(int n)
 {
   LineRule rule = { { 0.0, 0 }, { 1.0, 0 } };
@@ -72,7 +72,7 @@ LineRule gaussLobatto(int n)
   for (auto& [place, weight] : rule)
   {
     const double x = 2 * place - 1;
-    double before = 1, value = x; // Legendre's polynomials of the degrees k - 1 and k
+    double before = 1, value = x; // the Legendre polynomials of degrees k - 1 and k
     for (int k = 1; k < n - 1; ++k)
     {
       before = std::exchange(value, ((2 * k + 1) * x * value - k * before) / (k + 1));
@@ -109,7 +109,7 @@ std::vector<SamplePlace> tetrahedronRule(int n)
   return places;
 }
 
-/// All combinations of places over two factors; the second one is the line of w.
+/// The tensor product of a rule with the line rule for w.
 std::vector<SamplePlace> times(const std::vector<SamplePlace>& base, const LineRule& line)
 {
   std::vector<SamplePlace> places;
@@ -136,7 +136,7 @@ std::vector<SamplePlace> squareRule(int n, int m)
   return places;
 }
 
-/// Of a quadrilateral: exact to degree 9, as planar meshes are small.
+/// For quadrilaterals: exact to degree 9, which is affordable in 2D.
 constexpr int LeastSquarePlaces = 6;
 }
 

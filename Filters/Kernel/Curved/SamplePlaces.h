@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SamplePlaces.h
- * @brief Where the map of an element is sampled.
- * Internal: not installed.
+ * @brief The sample points of the map of an element. Internal: not installed.
  *
- * The places are those of a quadrature whose weights are positive: with a negative one a
- * sum of barriers has no minimum. Intervals have Gauss-Lobatto rules, whose places include the
- * corners; triangles and tetrahedra products of Gauss-Jacobi rules (A. H. Stroud, "Approximate
- * calculation of multiple integrals", 1971), tetrahedra up to order 2 quadratureOf().
+ * They are the points of a quadrature with positive weights: with a negative weight, a sum of
+ * barriers has no minimum. Intervals use Gauss-Lobatto rules, whose points include the corners;
+ * triangles and tetrahedra use products of Gauss-Jacobi rules (A. H. Stroud, "Approximate
+ * calculation of multiple integrals", 1971); tetrahedra up to order 2 use quadratureOf().
  */
 #ifndef tautline_SamplePlaces_h
 #define tautline_SamplePlaces_h
@@ -19,17 +18,17 @@ namespace tautline
 struct SamplePlace
 {
   Vec3 at;       ///< reference coordinates
-  double weight; ///< share of the element
+  double weight; ///< fraction of the element
 };
 
-/// The places and weights of the quadrature over an element; the weights add up to 1.
+/// The points and weights of the quadrature over an element; the weights add up to 1.
 TAUTLINE_KERNEL_EXPORT std::vector<SamplePlace> quadrature(const ElementType& type);
 
 /// A matrix of the dimension of the element in the leading rows and columns.
 using SmallMatrix = std::array<std::array<double, 3>, 3>;
 
-/// Places all over a shape, edges included, that tell apart polynomials of the degree of the
-/// determinant of an element; their weights are equal and add up to 1.
+/// Points distributed over a shape, including its edges, that determine polynomials of the degree
+/// of the element determinant; their weights are equal and add up to 1.
 TAUTLINE_KERNEL_EXPORT std::vector<SamplePlace> lattice(
   ElementShape shape, const ElementOrders& orders);
 }

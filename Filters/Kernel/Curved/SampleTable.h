@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SampleTable.h
- * @brief What the Jacobian of an element is made of at places of it.
- * Internal: not installed.
+ * @brief The shape-function gradients of an element at its sample points. Internal: not installed.
  */
 #ifndef tautline_SampleTable_h
 #define tautline_SampleTable_h
@@ -20,15 +19,15 @@ double determinantOf(const SmallMatrix& m, int dimension);
 
 /**
  * @class SampleTable
- * @brief The gradients of the shape functions at some places, times W^-1 of the ideal element: the
- * columns of T = A W^-1 are the sums of nodes times these.
+ * @brief The gradients of the shape functions at some points, times W^-1 of the ideal element: the
+ * columns of T = A W^-1 are sums of the nodes times these gradients.
  *
- * The places are the lanes of packets; lanes beyond the last place repeat it with weight 0.
+ * The points are the lanes of packets; lanes beyond the last point repeat it with weight 0.
  */
 class SampleTable
 {
 public:
-  /// @param mirrored whether the elements are taken for their mirror images
+  /// @param mirrored whether the elements are treated as their mirror images
   SampleTable(const ElementType& type, bool mirrored, std::vector<SamplePlace> places);
 
   int nodes() const { return this->Nodes; }
@@ -40,7 +39,7 @@ public:
   {
     return this->Gradients.data() + static_cast<std::size_t>(packet) * this->Stride;
   }
-  /// det W: det A = det T det W.
+  /// det W, where det A = det T det W.
   double idealDeterminant() const { return this->IdealDeterminant; }
 
 private:

@@ -24,7 +24,7 @@ struct PiecePoint
   Vec3 x, byS, byT;
 };
 
-/// The powers of a number, and of what is left of it.
+/// The powers of x and of 1 - x.
 void powersOf(double x, int degree, double* powers)
 {
   powers[0] = 1;
@@ -107,7 +107,7 @@ FacetForm makeForm(bool line, bool triangle, int first, int second)
   return form;
 }
 
-/// From the nodes of an element on a face to the control points of the face.
+/// The map from the element nodes on a face to the control points of the face.
 struct FaceMap
 {
   FacetForm form;
@@ -137,7 +137,7 @@ FaceMap faceMap(const ElementType& type, const ElementFace& face)
       map.places.push_back(face.coordinates(at));
     }
   }
-  // The polynomial is interpolated where its control points have their peaks.
+  // Interpolate the polynomial at the maxima of the Bernstein polynomials.
   const BernsteinSpace space = spaceOf(map.form);
   Eigen::MatrixXd bernstein(space.size(), space.size());
   Eigen::MatrixXd shapes(space.size(), static_cast<Eigen::Index>(map.nodes.size()));
@@ -183,7 +183,7 @@ struct FaceCandidate
   }
 };
 
-/// The faces of all elements in the order of their corners: those that occur once are the boundary.
+/// The faces of all elements sorted by their corners; faces that occur once form the boundary.
 std::vector<FaceCandidate> candidatesOf(const std::vector<CurvedElement>& elements, FaceMaps& maps)
 {
   std::vector<FaceCandidate> candidates;
@@ -218,7 +218,8 @@ std::vector<FaceCandidate> candidatesOf(const std::vector<CurvedElement>& elemen
   return candidates;
 }
 
-/// The edges of a facet: of a triangle t = 0, s = 0, s + t = 1; of a square t = 0, 1, s = 0, 1.
+/// The edges of a facet: t = 0, s = 0, s + t = 1 for a triangle; t = 0, 1 and s = 0, 1 for a
+/// square.
 struct FacetLine
 {
   double (*distance)(const Vec2& place);
@@ -243,13 +244,13 @@ const std::vector<FacetLine>& linesOf(const FacetForm& form)
   return form.triangle ? triangle : square;
 }
 
-/// The angle of two unit vectors in degrees.
+/// The angle between two unit vectors in degrees.
 double angleOf(const Vec3& a, const Vec3& b)
 {
   return DegreesPerRadian * std::atan2(norm(cross(a, b)), dot(a, b));
 }
 
-/// Whether a place is not at the border of its piece.
+/// Whether a position is not on the border of its piece.
 bool isInside(const FacetForm& form, const Vec2& at)
 {
   constexpr double border = 1e-9;
@@ -360,7 +361,7 @@ void SlidingBoundary::addFacets(
 }
 
 //------------------------------------------------------------------------------
-/// @param places of the nodes of the facet, s and t
+/// @param places s and t of the nodes of the facet
 void SlidingBoundary::addEdges(Index facet, const std::vector<Vec2>& places)
 {
   const FacetForm& form = *this->Pieces[facet].form;
@@ -380,7 +381,7 @@ void SlidingBoundary::addEdges(Index facet, const std::vector<Vec2>& places)
         }
       }
     }
-    // The control points of the edge are those of the facet on it, in order.
+    // The control points of the edge are the facet control points on it, in order.
     const int degree = form.triangle || l < 2 ? form.degrees[0] : form.degrees[1];
     edge.controls.resize(degree + 1);
     for (std::size_t k = 0; k < form.exponents.size(); ++k)
@@ -405,7 +406,7 @@ void SlidingBoundary::addEdges(Index facet, const std::vector<Vec2>& places)
 }
 
 //------------------------------------------------------------------------------
-/// Makes the feature edges pieces.
+/// Adds the feature edges as pieces.
 void SlidingBoundary::addCurves(double featureAngle)
 {
   std::sort(this->Edges.begin(), this->Edges.end(),
@@ -512,7 +513,7 @@ void SlidingBoundary::joinParts()
       }
     }
   }
-  // Patches first.
+  // Number the patches first.
   std::map<Index, int> numbers;
   for (const bool lines : { false, true })
   {
@@ -538,7 +539,7 @@ CurvedPlace SlidingBoundary::closestOn(Index index, const Vec3& x, Vec2 from) co
   double s = from[0], t = from[1], least = std::numeric_limits<double>::infinity();
   if (s < 0)
   {
-    // Without a place, Gauss and Newton's method begins at the nearest one of a lattice.
+    // Without a start position, the Gauss-Newton method begins at the nearest lattice point.
     const int cuts = std::max(form.degrees[0], form.degrees[1]) + 1;
     for (int i = 0; i <= cuts; ++i)
     {
@@ -569,7 +570,7 @@ CurvedPlace SlidingBoundary::closestOn(Index index, const Vec3& x, Vec2 from) co
     {
       ds = (tt * bs - st * bt) / det;
       dt = (ss * bt - st * bs) / det;
-      // At an edge that the step leaves, it goes along the edge.
+      // A step that would leave the piece is projected onto its edge.
       const bool atS = (s <= 0 && ds < 0) || (!form.triangle && s >= 1 && ds > 0);
       const bool atT = (t <= 0 && dt < 0) || (!form.triangle && t >= 1 && dt > 0);
       if (form.triangle && s + t >= 1 && ds + dt > 0 && !atS && !atT)
@@ -584,7 +585,7 @@ CurvedPlace SlidingBoundary::closestOn(Index index, const Vec3& x, Vec2 from) co
         dt = atT ? 0 : bt / tt;
       }
     }
-    // A step that leads farther away is halved.
+    // Halve a step that increases the distance.
     bool nearer = false;
     double newS = s, newT = t;
     for (int half = 0; half < 10 && !nearer; ++half, ds *= 0.5, dt *= 0.5)
@@ -624,7 +625,7 @@ CurvedPlace SlidingBoundary::closest(const CurvedPlace& start, const Vec3& x) co
   double least = norm(best.point - x);
   if (isInside(*this->Pieces[piece].form, best.at))
   {
-    return best; // a minimum on the piece, and no other one is nearer around
+    return best; // a minimum on the piece, and no adjacent piece is nearer
   }
   constexpr int longestWalk = 16; // pieces
   std::vector<Index> seen = { piece };

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SlidingBoundary.h
- * @brief The curved boundary of a mesh: its facets, edges and features, and the closest places.
+ * @brief The curved boundary of a mesh: its facets, edges and features, and closest-point queries.
  * Internal: not installed.
  *
- * The facets are the faces of volume elements that no other element has, and in a plane the edges,
- * with the polynomials of their elements. Edges at which the normals of two facets differ by more
- * than the feature angle in the middle are feature edges; curves of these end where they bend by
- * more, and where other than two meet. A patch is what facets form across other edges.
+ * The facets are the faces of volume elements (in a plane, the edges) that belong to one element
+ * only, with the polynomials of their elements. Edges at whose middle the normals of two facets
+ * differ by more than the feature angle are feature edges. Curves consist of feature edges and end
+ * where they bend by more than this angle or where the number of feature edges is not two. Facets
+ * connected across other edges form a patch.
  */
 #ifndef tautline_SlidingBoundary_h
 #define tautline_SlidingBoundary_h
@@ -23,14 +24,14 @@ namespace tautline
 struct FacetForm
 {
   bool line = false, triangle = false;
-  /// By control point: the exponents of s, t and the rest of a triangle; of a square and an
-  /// interval those of s and t, with degrees - exponents left for 1 - s and 1 - t.
+  /// By control point: for a triangle, the exponents of s, t, and 1 - s - t; for a square or
+  /// interval, the exponents of s and t, where 1 - s and 1 - t have degrees - exponents.
   std::vector<std::array<int, 3>> exponents;
   std::vector<double> multinomials;
   std::array<int, 2> degrees = { 0, 0 };
 };
 
-/// A facet of the surface, or an edge of a curve, as it was at the start.
+/// A facet of the surface or an edge of a curve in its original shape.
 struct CurvedPiece
 {
   const FacetForm* form;
@@ -43,12 +44,12 @@ struct CurvedPiece
   std::array<Index, 2> ends = { -1, -1 }; ///< of an edge: the points at s = 0 and 1
 };
 
-/// A place on a piece.
+/// A position on a piece.
 struct CurvedPlace
 {
   Index piece = -1;
   Vec3 point = { 0, 0, 0 };
-  Vec3 direction = { 0, 0, 0 }; ///< unit normal, of a curve the unit tangent; or zero
+  Vec3 direction = { 0, 0, 0 }; ///< unit normal (of a curve: unit tangent), or zero
   Vec2 at = { -1, -1 };         ///< s and t on the piece; negative: not known
 };
 
@@ -56,7 +57,7 @@ class SlidingBoundary
 {
 public:
   /**
-   * @param points 3 coordinates each; of a mesh in a plane in its frame, with z = 0
+   * @param points 3 coordinates each; for a planar mesh, in its frame with z = 0
    * @param dimension 2 or 3
    * @param featureAngle in degrees
    */
@@ -66,19 +67,20 @@ public:
   /// Whether a point is on the boundary.
   bool contains(Index point) const { return this->Kinds[point] != NotOnBoundary; }
   PointKind kind(Index point) const { return static_cast<PointKind>(this->Kinds[point]); }
-  /// A piece of the patch, or curve, that a point is in; -1 for corners and inner points.
+  /// A piece of the patch or curve that contains a point; -1 for corners and interior points.
   Index pieceOf(Index point) const { return this->PieceOf[point]; }
   const std::vector<CurvedPiece>& pieces() const { return this->Pieces; }
   int parts() const { return this->Parts; }
   bool isCurve(int part) const { return part >= this->Patches; }
 
   /**
-   * @brief The closest place to x on the part of a piece, by way of nearer pieces that meet.
-   * @param from where the search begins: its piece, and the place on it if that is known
+   * @brief The closest position to x on the part of a piece, found by walking through adjacent,
+   * nearer pieces.
+   * @param from where the search begins: the piece and, if known, the position on it
    */
   CurvedPlace closest(const CurvedPlace& from, const Vec3& x) const;
 
-  /// The closest place of all pieces of a part.
+  /// The closest position on all pieces of a part.
   CurvedPlace closestOfPart(int part, const Vec3& x) const;
 
   /**
@@ -89,7 +91,7 @@ public:
 
 private:
   static constexpr signed char NotOnBoundary = -1;
-  /// An edge of a facet: what a curve is made of.
+  /// An edge of a facet; curves consist of such edges.
   struct FacetEdge
   {
     std::array<Index, 2> ends; ///< the smaller first
@@ -110,7 +112,7 @@ private:
   int Dimension;
   std::vector<CurvedPiece> Pieces; ///< facets, then feature edges
   std::vector<FacetEdge> Edges;
-  std::vector<std::array<Index, 2>> Smooth; ///< facets that meet at an edge without a feature
+  std::vector<std::array<Index, 2>> Smooth; ///< facets that meet at a non-feature edge
   int Parts = 0, Patches = 0;
   std::vector<signed char> Kinds;
   std::vector<Index> PieceOf;

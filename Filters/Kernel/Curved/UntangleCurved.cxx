@@ -13,7 +13,8 @@ namespace tautline
 namespace
 {
 constexpr double RuleShare = 0.7, NodeShare = 0.3; ///< of the weight of an element
-constexpr int DenseAfter = 4;                      ///< steps for which an element is not valid
+/// number of steps in which an element was invalid
+constexpr int DenseAfter = 4;
 
 /// The samples of the quadrature and the nodes.
 std::shared_ptr<const SampleTable> tableOf(const CurvedElement& element)
@@ -43,7 +44,7 @@ const ElementType& linearType(ElementShape shape)
   return ElementType::ofVtk(static_cast<int>(corners.type), corners.nodes);
 }
 
-/// What an attempt has found.
+/// The result of an attempt.
 struct Attempt
 {
   std::vector<double> x;
@@ -80,7 +81,7 @@ private:
 };
 
 //------------------------------------------------------------------------------
-/// Adds a record and reports it. @return false if the work is to end
+/// Adds a record and reports it. @return false to stop
 bool CurvedUntangling::proceed(double energy, Index invalid, Index moving,
   const CurvedRegion* region, const std::vector<double>* x)
 {
@@ -117,7 +118,7 @@ bool CurvedUntangling::proceed(double energy, Index invalid, Index moving,
 }
 
 //------------------------------------------------------------------------------
-/// The samples of the elements; each T is relative to the size that its element has.
+/// The samples of the elements; each T is scaled to the size of its element.
 template <int Dim>
 std::vector<SampleItem> CurvedUntangling::itemsOf(const CurvedRegion& region)
 {
@@ -163,7 +164,7 @@ Attempt CurvedUntangling::untangle(CurvedRegion& region)
 
   std::vector<double> x = region.x, trial;
   Attempt best = { x, guard.invalid(x) };
-  std::map<Index, int> recurrences; ///< by element: how often it was not valid
+  std::map<Index, int> recurrences; ///< by element: how often it was invalid
   std::vector<WeakPlace> weak = best.weak;
   double least = energy.leastDeterminant(x);
   constexpr double tiny = 1e-9, ofLeast = 0.2, slowest = 0.6;
@@ -175,8 +176,8 @@ Attempt CurvedUntangling::untangle(CurvedRegion& region)
        outer < most && !best.weak.empty() && sinceBest < patience && sinceStep < mostWithoutStep;
        ++outer)
   {
-    // The place of the smallest determinant of an invalid element is a sample. An element that
-    // remains invalid is sampled everywhere.
+    // The location of the smallest determinant of an invalid element becomes a sample. An element
+    // that remains invalid is sampled densely.
     std::vector<SampleItem> added;
     for (const WeakPlace& place : weak)
     {
@@ -242,8 +243,8 @@ Attempt CurvedUntangling::untangle(CurvedRegion& region)
 }
 
 //------------------------------------------------------------------------------
-/// Takes the nodes of invalid elements towards their places in a straight element, until these are
-/// valid. @return how many elements were changed
+/// Moves the nodes of invalid elements toward their positions in a straight element until these are
+/// valid. @return the number of changed elements
 Index CurvedUntangling::straighten(const std::vector<WeakPlace>& weak)
 {
   constexpr int steps = 16;
@@ -297,7 +298,7 @@ CurvedUntangleResult CurvedUntangling::run()
   this->Result.invalidBefore = static_cast<Index>(first.size());
   this->Result.reason = first.empty() ? StopReason::AllValid : StopReason::NoFreeVertices;
   constexpr std::array<int, 3> rings = { 2, 5, -1 };
-  std::size_t tried = 0; // elements of the last attempt
+  std::size_t tried = 0; // number of elements in the last attempt
   for (std::size_t attempt = 0; attempt < rings.size() && !weak.empty(); ++attempt)
   {
     CurvedRegion region = this->Problem.region(weak, rings[attempt]);
@@ -308,7 +309,7 @@ CurvedUntangleResult CurvedUntangling::run()
       this->Result.reason = this->Stopped;
       break;
     }
-    // A wider region may be the same one, where nothing else is to be expected.
+    // A wider region may contain the same elements; the result would then be the same.
     const bool same = region.elements.size() == tried;
     tried = region.elements.size();
     if (region.free == 0 || same)
@@ -319,7 +320,7 @@ CurvedUntangleResult CurvedUntangling::run()
       this->Problem.dimension() == 2 ? this->untangle<2>(region) : this->untangle<3>(region);
     if (found.weak.size() < weak.size())
     {
-      tried = 0; // from other points
+      tried = 0; // the points have changed
       this->Problem.take(region, found.x);
       weak = guard.invalid(this->Problem.x());
     }
@@ -367,7 +368,7 @@ CurvedUntangleResult untangleCurved(const Mesh& mesh, const CurvedOptions& optio
     options.boundary == BoundaryMotion::OnSurface || options.boundary == BoundaryMotion::FlatParts;
   if (slides && result.invalidAfter > 0 && result.reason == StopReason::NoProgress)
   {
-    // What the boundary may do is not always for the better: it is held, from the start.
+    // Boundary motion may not help: start over with a fixed boundary.
     CurvedOptions held = options;
     held.boundary = BoundaryMotion::Fixed;
     CurvedProblem again(mesh, held);

@@ -85,14 +85,14 @@ void CellPlans::requireSupported() const
   {
     const auto& [type, number] = *refused.begin();
     throw Error(std::to_string(number) + " " + nameOf(type) +
-      " cannot be curved: divide them into triangles or tetrahedra first (Tetrahedralize), or take "
-      "them out (Extract Cells By Type).");
+      " cannot be curved: divide them into triangles or tetrahedra first (Tetrahedralize), or "
+      "remove them (Extract Cells By Type).");
   }
   if (rational > 0)
   {
     throw Error(std::to_string(rational) +
       " cells are rational: they have weights (RationalWeights), which polynomial cells do not "
-      "have. Convert them to Lagrange cells first.");
+      "support. Convert them to Lagrange cells first.");
   }
 }
 
@@ -150,7 +150,7 @@ CellPlan CellPlans::make(int vtkType, int nodes, const ElementOrders& orders) co
   const CellType corners = cornerType(vtkType);
   if (corners == CellType::Unsupported)
   {
-    // Vertices, and cells without points, stay.
+    // Vertices and cells without points stay unchanged.
     plan.type = { vtkType, nodes };
     for (int n = 0; n < nodes; ++n)
     {
@@ -171,7 +171,7 @@ CellPlan CellPlans::make(int vtkType, int nodes, const ElementOrders& orders) co
   }
   catch (const Error&)
   {
-    given = &ElementType::ofVtk(vtkType, nodes); // special numbers of nodes have no orders
+    given = &ElementType::ofVtk(vtkType, nodes); // special node counts have no orders
   }
   const bool turns = isFromInside(vtkType) != isFromInside(plan.type.vtkType);
   const bool changed = isFromInside(vtkType) && this->Facts.wedgesTurned;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CellPlans.h
- * @brief What becomes of each type of cells when a mesh is curved.
- * Internal: not installed.
+ * @brief How each cell type is converted when a mesh is curved. Internal: not installed.
  */
 #ifndef tautline_CellPlans_h
 #define tautline_CellPlans_h
@@ -15,16 +14,16 @@
 
 namespace tautline
 {
-/// The nodes that the cells of a type get. Positions are in the list of nodes of the given cell.
+/// The nodes of converted cells. Positions are indices in the node list of the given cell.
 struct CellPlan
 {
   VtkCellType type;
   std::vector<CurvedNode> nodes;
-  std::vector<int> corners; ///< per corner of the new cell its position
-  /// Per node the values of the given cell's functions there, by position.
+  std::vector<int> corners; ///< per corner of the new cell: its position
+  /// Per node: the shape function values of the given cell there, by position.
   std::vector<NodeWeights> given;
-  bool curved = false;     ///< whether the given cell is
-  bool reversible = false; ///< whether it is a cell of topologies()
+  bool curved = false;     ///< whether the given cell is curved
+  bool reversible = false; ///< whether the cell has one of topologies()
 };
 
 class CellPlans

@@ -33,20 +33,20 @@ void checkOptions(const CurvingOptions& options)
   }
 }
 
-/// A place where nodes are; several nodes may be there where coincident points are not one.
+/// A location of nodes; it may have several nodes if coincident points are not merged.
 struct Place
 {
-  Vec3 base;                 ///< where the cells of the input have it
+  Vec3 base;                 ///< its position in the input cells
   Vec3 offset = { 0, 0, 0 }; ///< from there
-  bool known = false;        ///< whether the offset is
+  bool known = false;        ///< whether the offset is known
   bool boundary = false;
 };
 
-/// What sampleFacet() needs of the facets of a shape.
+/// The data that sampleFacet() needs for the facets of a shape.
 struct FacetSamples
 {
   std::vector<CurvedNode> nodes;
-  /// Per sample the functions of the curved facet, and of its corners.
+  /// Per sample: the shape functions of the curved facet and of its corners.
   std::vector<std::vector<double>> curved, linear;
 };
 
@@ -158,7 +158,7 @@ private:
   Features Found;
   GeometryMatch Match;
   std::vector<SurfaceProjection> Parts; ///< of the geometry
-  std::unique_ptr<Mesh> Placed;         ///< with the corners on the geometry
+  std::unique_ptr<Mesh> Placed;         ///< the mesh with the corners on the geometry
   std::vector<Index> NumberOf;          ///< per point of the input in the result, or -1
   NodeNumbers Numbers, NumbersOfPlaces; ///< of nodes, and of places of merged points
   std::vector<Index> PlaceOf;           ///< per node, with merged points
@@ -199,7 +199,7 @@ void Curver::findFeaturesOf()
 }
 
 //------------------------------------------------------------------------------
-/// Places the corners of the boundary on the geometry.
+/// Moves the corners of the boundary onto the geometry.
 void Curver::placeCorners()
 {
   this->Placed = std::make_unique<Mesh>(this->TheMesh);
@@ -227,7 +227,7 @@ void Curver::placeCorners()
 }
 
 //------------------------------------------------------------------------------
-/// Keeps all points but those that are nodes of curved cells only.
+/// Keeps all points except nodes that only curved cells use.
 void Curver::keepPoints()
 {
   enum Use : unsigned char
@@ -276,8 +276,8 @@ NodeName Curver::nameOf(const CellPlan& plan, int node, const Index* cell, bool 
 }
 
 //------------------------------------------------------------------------------
-/// Where the given cell has a node, its corners being placed; straight-sided if it is not to keep
-/// its shape.
+/// The position of a node in the given cell after its corners were placed; straight-sided unless
+/// the cell keeps its shape.
 Vec3 Curver::baseOf(const CellPlan& plan, int node, const Index* cell) const
 {
   Vec3 base = { 0, 0, 0 };
@@ -299,7 +299,7 @@ Vec3 Curver::baseOf(const CellPlan& plan, int node, const Index* cell) const
 }
 
 //------------------------------------------------------------------------------
-/// @param name of a node on an edge or face; null: inside
+/// @param name the name of a node on an edge or face; null: inside
 Index Curver::addNode(const CellPlan& plan, int node, const Index* cell, const NodeName* name)
 {
   const auto number = static_cast<Index>(this->Result.starts.size());
@@ -369,7 +369,7 @@ void Curver::makeNodes()
 }
 
 //------------------------------------------------------------------------------
-/// Places a node of the boundary where it is to be, or on the geometry near there.
+/// Moves a boundary node to its smooth position, or onto the nearby geometry.
 void Curver::placeNode(const NodeName& name, const Vec3& target, int part)
 {
   const auto at = this->placeNumbers().find(name);
@@ -381,7 +381,7 @@ void Curver::placeNode(const NodeName& name, const Vec3& target, int part)
   place.boundary = true;
   if (place.known)
   {
-    return; // of a curve, or by the facet beside
+    return; // already placed by a curve or by the adjacent facet
   }
   place.known = true;
   const bool keeps = this->Result.curvedBefore > 0;
@@ -459,7 +459,8 @@ void Curver::placeBoundary()
 }
 
 //------------------------------------------------------------------------------
-/// Moves nodes inside with those of the edges and faces around: all faces before all insides.
+/// Moves inner nodes with the nodes of the surrounding edges and faces: all faces before all cell
+/// interiors.
 void Curver::followBoundary()
 {
   for (NodePlace kind : { NodePlace::Face, NodePlace::Inside })
@@ -495,7 +496,7 @@ void Curver::writePoints()
 {
   for (Index p : this->Result.kept)
   {
-    // Points that are one are so in the mesh only.
+    // Merged points are merged only in the mesh.
     const Index merged = this->mergedOf(p);
     const Vec3 x = pointOf(this->Cells, p) + (this->cornerOf(merged) - this->originalOf(merged));
     this->Result.points.insert(this->Result.points.end(), x.begin(), x.end());
@@ -542,7 +543,8 @@ void Curver::certify()
 }
 
 //------------------------------------------------------------------------------
-/// Measures at samples of the facets how far the boundary is from the geometry, and was.
+/// Measures the distance of the boundary from the geometry, before and after, at samples of the
+/// facets.
 void Curver::measureDistances()
 {
   if (!this->Options.geometry)
@@ -595,7 +597,7 @@ void Curver::sampleFacet(const SurfaceProjection& geometry, CellType shape, cons
     const auto found = this->placeNumbers().find(name);
     if (found == this->placeNumbers().end())
     {
-      return; // a facet beside cells that are left out
+      return; // a facet next to excluded cells
     }
     const Place& place = this->Places[found->second];
     now.push_back(place.base + place.offset);

@@ -25,8 +25,8 @@ public:
   {
   }
 
-  /// The control points of the next piece of a part; null if it is flat. The model leaves out
-  /// pieces whose squares of coordinates are not finite.
+  /// The control points of the next piece of a part; null if it is flat. The model omits pieces
+  /// with coordinates whose squares overflow.
   const CubicControls* next(int part, const Vec3& a, const Vec3& b, const Vec3& c)
   {
     if (!std::isfinite(dot(a, a) + dot(b, b) + dot(c, c)))

@@ -17,11 +17,11 @@ namespace tautline
 /// A cubic curve by its Bezier points.
 using CubicCurve = std::array<Vec3, 4>;
 
-/// An edge of the boundary on its curve.
+/// A boundary edge as part of its curve.
 struct CurvedEdge
 {
   Index first, second;
-  int part; ///< of partsOfPoints(): a patch, or patches + a curve
+  int part; ///< as in partsOfPoints(): a patch, or the number of patches + a curve
   CubicCurve curve;
 };
 
@@ -36,7 +36,8 @@ struct CurvedFace
 
 struct CurvedBoundary
 {
-  std::vector<CurvedEdge> edges; ///< of curves, which come first, and of facets, each at least once
+  /// edges of curves first, then edges of facets; each at least once
+  std::vector<CurvedEdge> edges;
   std::vector<CurvedFace> faces;
 };
 
@@ -50,8 +51,8 @@ CurvedBoundary curvedBoundary(const Mesh& mesh, const Features& features);
 Vec3 pointOn(const CubicCurve& curve, double t);
 
 /**
- * @brief The point of a face with these shares of its corners: of a quadrilateral the Coons patch
- * of its edges (S. A. Coons, "Surfaces for computer-aided design of space forms", 1967).
+ * @brief The point of a face with these weights of its corners; for a quadrilateral, on the Coons
+ * patch of its edges (S. A. Coons, "Surfaces for computer-aided design of space forms", 1967).
  */
 Vec3 pointOn(const CurvedFace& face, const std::array<double, MaxFaceNodes>& shares);
 }

@@ -22,7 +22,7 @@ int count(int n, int p)
   return product;
 }
 
-/// The types of order 2 with all polynomials, and the serendipity ones.
+/// The order-2 types with full polynomials, and the serendipity types.
 struct QuadraticTypes
 {
   CellType corners;
@@ -37,18 +37,18 @@ constexpr QuadraticTypes quadraticTypes[] = {
   { CellType::Pyramid, { 37, 19 }, { 27, 13 } },
 };
 
-/// The shares of the corners of a cell at a place of its reference element.
+/// The corner weights of a cell at a reference position.
 std::vector<double> cornerShares(CellType corners, const Vec3& at)
 {
   const CellTopology& t = topology(corners);
   return ElementType::ofVtk(static_cast<int>(corners), t.nodes).shapeFunctions(at);
 }
 
-/// A part of a cell, an edge or a face, as seen from a place in the cell.
+/// The projection of a position in a cell onto an edge or face of the cell.
 struct Shadow
 {
-  double size = 0;            ///< the sum of the shares of its corners
-  std::vector<double> shares; ///< of its corners, which add up to 1
+  double size = 0;            ///< the sum of the sizes of its corners
+  std::vector<double> shares; ///< weights of its corners, which add up to 1
 };
 
 Shadow shadowOn(const std::vector<double>& shares, const std::vector<int>& corners)
@@ -102,7 +102,7 @@ private:
   std::vector<CurvedNode>& Nodes;
 };
 
-/// The node of a name; -1 where the type has none, as serendipity types.
+/// The node with a name; -1 if the type lacks it, as serendipity types do.
 int Follower::find(const std::vector<CornerShare>& name) const
 {
   for (std::size_t n = 0; n < this->Nodes.size(); ++n)
@@ -119,10 +119,10 @@ int Follower::find(const std::vector<CornerShare>& name) const
 }
 
 /**
- * @brief What the displacement of an edge or face is multiplied by at a node: the p-th power of the
- * sum of the shares of its corners across triangles, the first across quadrilaterals.
+ * @brief The factor of the displacement of an edge or face at a node: the sum of the weights of its
+ * corners, to the p-th power across triangles and to the first power across quadrilaterals.
  *
- * Of a wedge, both: horizontally it is a triangle.
+ * A wedge needs both factors: horizontally it is a triangle.
  */
 double Follower::factorOf(const CurvedNode& node, const std::vector<int>& part) const
 {
@@ -160,7 +160,7 @@ double Follower::factorOf(const CurvedNode& node, const std::vector<int>& part) 
   }
 }
 
-/// The displacement of a node as that of the edges alone, one weight per node.
+/// The displacement of a node caused by the edges alone, as one weight per node.
 std::vector<double> Follower::ofEdges(const CurvedNode& node) const
 {
   std::vector<double> row(this->Nodes.size(), 0.0);
@@ -184,7 +184,7 @@ std::vector<double> Follower::ofEdges(const CurvedNode& node) const
   return row;
 }
 
-/// Adds what a face displaces a node beside its edges.
+/// Adds the displacement that a face causes in addition to its edges.
 void Follower::addFace(const CurvedNode& node, int face, std::vector<double>& row) const
 {
   const int size = this->Topology.faceSizes[face];
@@ -243,7 +243,7 @@ void Follower::set(CurvedNode& node) const
   }
 }
 
-/// Of a pyramid: the quadratic one with 13 nodes, and the middle of the base beside that.
+/// For a pyramid: the quadratic one with 13 nodes, plus the middle of the base.
 void setPyramid(std::vector<CurvedNode>& nodes)
 {
   constexpr int edgesEnd = 13, base = 13;

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CurvedNodes.h
- * @brief Where the nodes of a curved cell are: on which of its edges and faces, and how the nodes
- * inside follow those on its edges and faces.
- * Internal: not installed.
+ * @brief The positions of the nodes of a curved cell on its edges and faces, and how inner nodes
+ * follow the nodes on edges and faces. Internal: not installed.
  */
 #ifndef tautline_CurvedNodes_h
 #define tautline_CurvedNodes_h
@@ -15,19 +14,19 @@
 
 namespace tautline
 {
-/// A VTK type with its number of nodes; of a line, too.
+/// A VTK type with its number of nodes; also used for lines.
 struct VtkCellType
 {
   int vtkType = 0, nodes = 0;
 };
 
 /**
- * @brief The cells of an order: VTK's quadratic cells of all polynomials, or its serendipity cells,
- * for order 2, Lagrange cells above.
- * @throws Error for pyramids of order 3 and above, which VTK does not have
+ * @brief The cells of an order: for order 2, VTK's quadratic cells with full polynomials or its
+ * serendipity cells; for higher orders, Lagrange cells.
+ * @throws Error for pyramids of order 3 and above, which VTK does not support
  */
 VtkCellType curvedType(CellType corners, int order, bool serendipity);
-/// The same of lines.
+/// The same for lines.
 VtkCellType curvedLine(int order);
 
 /// A value at a node as a sum over other nodes.
@@ -38,8 +37,8 @@ struct NodeWeight
 };
 using NodeWeights = std::vector<NodeWeight>;
 
-/// A part of a node's name: of how much weight a corner is in the linear cell, as a multiple of
-/// 1 / NameUnits. The parts, by ids of corners, are the same in all cells that share the node.
+/// A part of a node's name: the weight of a corner in the linear cell, as a multiple of 1 /
+/// NameUnits. These parts, keyed by corner ids, are the same in all cells that share the node.
 struct CornerShare
 {
   int corner, share;
@@ -59,10 +58,10 @@ enum class NodePlace : unsigned char
 struct CurvedNode
 {
   NodePlace place;
-  std::vector<CornerShare> corners; ///< those with a share; empty inside
+  std::vector<CornerShare> corners; ///< corners with nonzero weight; empty inside
   std::vector<double> linear;       ///< the share of each corner, 0 to 1
   Vec3 at;                          ///< reference coordinates
-  /// The displacement that follows from those of edge and face nodes; of nodes on faces and inside.
+  /// For nodes on faces and inside: the displacement in terms of the edge and face nodes.
   NodeWeights follows;
 };
 
@@ -70,18 +69,18 @@ struct CurvedNode
  * @brief The nodes of a type; built once per type.
  *
  * The displacement of an edge is extended over a triangle, with barycentric coordinates a and b of
- * its ends, by (a + b)^p d(b / (a + b)), which is a polynomial of the order p of the edge; over a
- * quadrilateral linearly to the opposite side. Displacements of faces, less those of their edges,
- * are extended over cells in the same way: transfinite interpolation (W. Gordon, C. Hall,
- * "Transfinite element methods", Numer. Math. 21, 1973; of simplices P. Solin, K. Segeth,
+ * its ends, by (a + b)^p d(b / (a + b)), which is a polynomial of the order p of the edge; and over
+ * a quadrilateral linearly to the opposite side. Displacements of faces, minus the displacements of
+ * their edges, are extended over cells in the same way: transfinite interpolation (W. Gordon, C.
+ * Hall, "Transfinite element methods", Numer. Math. 21, 1973; for simplices, P. Solin, K. Segeth,
  * I. Dolezel, "Higher-Order Finite Element Methods", 2003).
  */
 std::vector<CurvedNode> curvedNodes(CellType corners, const VtkCellType& type);
-/// The same of lines.
+/// The same for lines.
 std::vector<CurvedNode> curvedLineNodes(int order);
 
 /// The values at t, 0 to 1, of the polynomials of an order on a line with nodes in VTK's order: the
-/// ends, then those between.
+/// ends, then the inner nodes.
 std::vector<double> lineFunctions(int order, double t);
 }
 #endif

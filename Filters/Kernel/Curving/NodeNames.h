@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file NodeNames.h
- * @brief Numbers of the nodes on edges and faces, the same for all cells that share them.
+ * @brief Numbering of the nodes on edges and faces, consistent for all cells that share them.
  * Internal: not installed.
  */
 #ifndef tautline_NodeNames_h
@@ -14,8 +14,8 @@
 
 namespace tautline
 {
-/// The corners of the edge or face of a node, in increasing order, and the share of each; -1 and 0
-/// where there are fewer.
+/// The corners of the edge or face of a node, in increasing order, and the weight of each; unused
+/// entries are -1 and 0.
 class NodeName
 {
 public:

@@ -14,7 +14,7 @@ namespace
 {
 /// Smallest over largest eigenvalue at which a tensor counts as singular.
 constexpr double singular = 1e-12;
-/// Couplings below this fraction of those of the isotropic operator count as 0.
+/// Couplings below this fraction of the isotropic couplings are treated as 0.
 constexpr double coupled = 1e-12;
 
 bool isSingular(const SymmetricTensor& t, const Mesh& mesh)
@@ -42,7 +42,7 @@ double largestOf(const SymmetricTensor& t)
   return *std::max_element(t.begin(), t.begin() + 3);
 }
 
-/// The matrix of the cells there are; a rank may have none.
+/// The matrix of the local cells; a rank may have none.
 SparseMatrix matrixOf(
   const Mesh& mesh, const DiffusionOperator& pde, const AssemblyOptions& options)
 {
@@ -56,9 +56,9 @@ SparseMatrix matrixOf(
   return empty;
 }
 
-/// K M^-1 K: M is diagonal. Points outside all cells have empty rows. On several ranks the terms
-/// K_ij K_jk / M_jj of the own points j, whose rows of K are whole: those of all ranks are to be
-/// added up.
+/// K M^-1 K: M is diagonal. Points outside all cells have empty rows. On several ranks: the terms
+/// K_ij K_jk / M_jj of the owned points j, whose rows of K are complete; the terms of all ranks
+/// must be summed.
 SparseMatrix squared(const SparseMatrix& K, const std::vector<double>& mass, const Ranks& ranks)
 {
   SparseMatrix result;
@@ -99,7 +99,7 @@ SparseMatrix squared(const SparseMatrix& K, const std::vector<double>& mass, con
     }
     result.offsets.push_back(result.nonzeros());
   }
-  symmetrize(result); // of rounding
+  symmetrize(result); // removes rounding errors
   return result;
 }
 }
@@ -245,7 +245,7 @@ void Femwarp::findDecoupled(const SparseMatrix& matrix, WarpControl& control)
         }
       }
     }
-    // What other ranks have reached goes on here.
+    // Continue from the points that other ranks have reached.
     const std::vector<unsigned char> before = reached;
     ranks.either(reached.data());
     for (Index i = 0; i < n; ++i)
@@ -271,7 +271,7 @@ void Femwarp::findDecoupled(const SparseMatrix& matrix, WarpControl& control)
 
 //------------------------------------------------------------------------------
 /// Splits the prescribed displacements into affine motions and the rest.
-/// @return a bound on the rounding of the rest: what is no larger counts as nothing
+/// @return a bound on the rounding error of the rest; a smaller rest is treated as zero
 double Femwarp::splitAffine(
   const double* displacement, std::vector<double>& rest, std::vector<double>& result) const
 {

@@ -20,14 +20,17 @@ using Matrix = Eigen::Matrix3d;
 using Path = std::function<Vector(const Vector&)>; ///< the position of a point at a given amount
 
 constexpr double Degree = Pi / 180;
-constexpr double SmallAngle =
-  1e-7; // the axis of a smaller rotation is undetermined, and not needed
-constexpr double Flattened = 1e-12; // volumes of less than this times that of a cube as long
-constexpr int MaxPolarSteps = 100;  // it takes a dozen for the worst matrix let through
+constexpr double SmallAngle = 1e-7; // the axis of a smaller rotation is undetermined and not needed
+// relative volume, compared with the cube of the length, below which a box is flat
+constexpr double Flattened = 1e-12;
+constexpr int MaxPolarSteps = 100; // the worst accepted matrix needs about twelve
 constexpr double PolarChange =
-  1e-9;                          // of the last step but one; the error after the last is its square
-constexpr double Planar = 1e-12; // how far off a plane points may be, relative to their extent
-constexpr double SmallBend = 1e-4; // sin(x) / x and (1 - cos(x)) / x by their series below
+  // of the second-to-last step; the error after the last is its square
+  1e-9;
+// largest distance of the points from a plane, relative to their extent
+constexpr double Planar = 1e-12;
+// sin(x) / x and (1 - cos(x)) / x use their series below this value
+constexpr double SmallBend = 1e-4;
 
 Vector toVector(const Vec3& v)
 {
@@ -40,7 +43,7 @@ Vector unit(const Vector& v, const char* what)
   if (!(largest > 0) || !v.allFinite())
   {
     throw Error(std::string("The ") + what +
-      " of the motion has no length, or is not finite: give it a direction, such as 0 0 1.");
+      " of the motion has no length, or is not finite: enter a direction, such as 0 0 1.");
   }
   return (v / largest).normalized();
 }
@@ -69,7 +72,7 @@ Matrix rotation(double angle, const Vector& axis)
   return Eigen::AngleAxisd(angle, axis).toRotationMatrix();
 }
 
-/// The box around the points marked, and its middle.
+/// The box around the marked points, and its center.
 struct Extent
 {
   Vector low = Vector::Constant(std::numeric_limits<double>::infinity());
@@ -89,7 +92,7 @@ void forEachMoved(Index n, const double* points, const unsigned char* moved, con
   }
 }
 
-/// The unit normal of a plane all points marked lie in; zero if there is none.
+/// The unit normal of the plane that contains all marked points; zero if there is none.
 Vector normalOf(Index n, const double* points, const unsigned char* moved, const Vector& middle)
 {
   Matrix spread = Matrix::Zero();
@@ -108,9 +111,9 @@ Vector normalOf(Index n, const double* points, const unsigned char* moved, const
 }
 
 /**
- * @brief The same map of the plane with this normal, which stays a unit normal: what a box around a
- * flat mesh does in the direction it has no size in (ParaView's scales by 0 there) is of no
- * account.
+ * @brief The in-plane part of the map for the plane with this normal, which stays a unit normal.
+ * The scaling normal to the plane is ignored: ParaView's box around a flat mesh scales by 0 in that
+ * direction.
  */
 Matrix withinPlane(const Matrix& linear, const Vector& normal)
 {
@@ -124,7 +127,7 @@ Matrix withinPlane(const Matrix& linear, const Vector& normal)
   const bool proper = linear.determinant() > Flattened * std::pow(linear.norm(), 3);
   if (!(area > Flattened * linear.squaredNorm()) || (!proper && image.dot(normal) < 0))
   {
-    return linear; // flattens the plane itself, or mirrors in it
+    return linear; // the map flattens or mirrors within the plane itself
   }
   return linear * (Matrix::Identity() - normal * normal.transpose()) +
     image / area * normal.transpose();
@@ -139,13 +142,13 @@ Path matrixPath(
   if (!whole.allFinite() || whole.row(3) != Eigen::RowVector4d(0, 0, 0, 1))
   {
     throw Error(
-      "The transform is not affine, or not finite: choose one that moves, turns and scales.");
+      "The transform is not affine, or not finite: use only translation, rotation and scaling.");
   }
   const Matrix linear = withinPlane(whole.topLeftCorner<3, 3>(), normal);
   if (!(linear.determinant() > Flattened * std::pow(linear.norm(), 3)))
   {
     throw Error(
-      "The transform mirrors or flattens what it moves, which no mesh can follow: scale by "
+      "The transform mirrors or flattens the moved points, which no mesh can follow: scale by "
       "positive factors.");
   }
   const Matrix turn = rotationOf(linear);
@@ -176,8 +179,7 @@ Path bendingPath(const PointMotion& motion, double amount, Index n, const double
   const Vector across = given - axis.dot(given) * axis;
   if (across.norm() < Flattened)
   {
-    throw Error(
-      "The bar lies along the axis it is to be bent about: turn the axis or the direction.");
+    throw Error("The bar is parallel to the bending axis: change the axis or the direction.");
   }
   const Vector direction = across.normalized(), normal = axis.cross(direction);
   double first = std::numeric_limits<double>::infinity(), last = -first;
@@ -192,8 +194,8 @@ Path bendingPath(const PointMotion& motion, double amount, Index n, const double
   if (!(last > start))
   {
     throw Error(
-      "There is nothing to bend: no point lies further along the direction than where the "
-      "bar is held.");
+      "There is nothing to bend: no point lies beyond the clamped end of the bar along the "
+      "direction.");
   }
   const double curvature = amount * motion.angle * Degree / (last - start);
   return [=](const Vector& x) -> Vector
@@ -234,8 +236,8 @@ Path pathOf(const PointMotion& motion, double amount, Index n, const double* poi
       const Vector factors = toVector(motion.factors);
       if (!(factors.minCoeff() > 0))
       {
-        throw Error("A scale factor is not positive, which would flatten or mirror the part: give "
-                    "factors above 0.");
+        throw Error("A scale factor is not positive, which would flatten or mirror the part: "
+                    "use factors above 0.");
       }
       const Vector now = Vector::Ones() + amount * (factors - Vector::Ones());
       return [=](const Vector& x) -> Vector { return center + now.cwiseProduct(x - center); };
@@ -279,8 +281,8 @@ std::vector<double> displacements(const PointMotion& motion, double amount, Inde
     });
   if (wrong > 0)
   {
-    throw Error("The motion takes " + std::to_string(wrong) +
-      " points to places that are not finite: check its numbers.");
+    throw Error("The motion moves " + std::to_string(wrong) +
+      " points to positions that are not finite: check its parameters.");
   }
   return result;
 }

@@ -4,7 +4,7 @@
  * @brief Motions of points along their exact paths: an arc for a rotation, a screw for a rigid
  * motion, decreasing radii for a bend. For parts of a boundary that a mesh follows (Warp.h).
  *
- * Example: the points marked, a third of the way round an axis through their middle.
+ * Example: the marked points, after a third of a rotation about an axis through their center.
  *
  *     tautline::PointMotion motion;
  *     motion.kind = tautline::MotionKind::Rotation;
@@ -25,33 +25,33 @@ namespace tautline
 enum class MotionKind : int
 {
   /**
-   * @brief Any affine map without reflection: stretch about the centre of the points, then a
-   * rotation and a translation along a screw. For points in one plane only its effect in the plane
-   * counts.
+   * @brief Any affine map without reflection: stretch about the center of the points, then a
+   * rotation and a translation along a screw. For points in one plane, only the in-plane effect is
+   * used.
    */
   Matrix = 0,
   Translation = 1,
-  Rotation = 2, ///< by `angle` about `axis` through the centre
-  Scaling = 3,  ///< by `factors` along the coordinate axes, from the centre
+  Rotation = 2, ///< by `angle` about `axis` through the center
+  Scaling = 3,  ///< by `factors` along the coordinate axes, from the center
   /**
    * @brief A bar along `direction` becomes an arc of `angle` about `axis`; the line through the
-   * centre keeps its length. It is clamped where the points begin (ownCenter), or at the
-   * centre; nothing moves before that place.
+   * center keeps its length. The bar is clamped where the points begin (ownCenter), or at the
+   * center; points before this position do not move.
    */
   Bending = 4
 };
 
-/// A motion by its kind; each kind reads the members it names.
+/// A motion; each kind uses the members mentioned in its description.
 struct PointMotion
 {
   MotionKind kind = MotionKind::Matrix;
   std::array<double, 16> matrix = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1 }; ///< by rows
   Vec3 translation = { 0, 0, 0 };
-  double angle = 0.0; ///< degrees; any, also beyond a full turn
+  double angle = 0.0; ///< degrees; any value, including more than a full turn
   Vec3 axis = { 0, 0, 1 };
   Vec3 factors = { 1, 1, 1 };
   Vec3 direction = { 1, 0, 0 }; ///< of a bar to bend; its component along the axis is ignored
-  bool ownCenter = true; ///< the centre is that of the box around the moved points, else `center`
+  bool ownCenter = true; ///< use the center of the box around the moved points instead of `center`
   Vec3 center = { 0, 0, 0 };
 };
 

@@ -19,7 +19,7 @@ std::string counted(Index count, const char* what)
   return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
 
-/// What Automatic chose, and why: what each method that was tried left.
+/// The choice of Automatic and the reason: the result of each method tried.
 std::string explainChoice(const WarpResult& result)
 {
   std::ostringstream chosen, others;
@@ -47,9 +47,9 @@ void checkOptions(const Mesh& mesh, const WarpOptions& options, const Ranks& ran
       throw Error(text);
     }
   };
-  refuse(!isKnown(options.method), "There is no such method: choose one of WarpMethod.");
+  refuse(!isKnown(options.method), "Unknown method: choose one of WarpMethod.");
   refuse(!isKnown(options.coefficients),
-    "There is no such choice of coefficients: choose one of WarpCoefficients.");
+    "Unknown choice of coefficients: choose one of WarpCoefficients.");
   refuse(options.steps < 0 || options.maximumSteps < 1,
     "The number of steps must not be negative, and their limit at least 1.");
   refuse(!(options.tolerance > 0 && options.tolerance < 1),
@@ -75,12 +75,12 @@ void checkOptions(const Mesh& mesh, const WarpOptions& options, const Ranks& ran
   if (anisotropic && options.coefficients == WarpCoefficients::PerCell)
   {
     refuse(!options.tensors && mesh.view().numberOfCells > 0,
-      "Coefficients per cell are chosen, but there are none.");
+      "Coefficients per cell are selected, but not provided.");
     for (Index i = 0; i < mesh.view().numberOfCells; ++i)
     {
       if (!isPositiveSemidefinite(options.tensors + 6 * i))
       {
-        // The cells of a rank have numbers of its own.
+        // Cell numbers are local to a rank.
         throw Error("The coefficients of " +
           (ranks.several() ? "a cell" : "cell " + std::to_string(i)) +
           " are not finite or not positive semidefinite: correct them, or choose other "
@@ -120,7 +120,7 @@ void checkMesh(const Mesh& mesh, const WarpParts& parts, const WarpOptions& opti
   count = ranks.sum(count);
   if (count > 0)
   {
-    // The cells of a rank have numbers of its own.
+    // Cell numbers are local to a rank.
     throw Error(counted(count, "element") + (count == 1 ? " is" : " are") +
       " inverted or degenerate before anything moves" +
       (ranks.several() ? "" : ", the first is cell " + std::to_string(first)) +
@@ -170,7 +170,8 @@ struct Warper::Implementation
   WarpBoundary MovedBoundary;
 };
 
-/// Finite, and in the plane of a planar mesh. The length of the largest.
+/// Checks that displacements are finite and, for a planar mesh, in its plane. Returns the length of
+/// the largest.
 double Warper::Implementation::checkDisplacement(const double* displacement) const
 {
   const std::vector<unsigned char>& prescribed = this->Parts.prescribed();
@@ -198,8 +199,7 @@ double Warper::Implementation::checkDisplacement(const double* displacement) con
   {
     throw Error("The displacements of " + std::to_string(wrong) +
       " prescribed points are NaN or infinite" +
-      (this->ranks().several() ? "" : ", the first is that of point " + std::to_string(first)) +
-      ".");
+      (this->ranks().several() ? "" : ", the first at point " + std::to_string(first)) + ".");
   }
   out = this->ranks().maximum(out);
   largest = this->ranks().maximum(largest);
@@ -212,12 +212,13 @@ double Warper::Implementation::checkDisplacement(const double* displacement) con
 }
 
 //------------------------------------------------------------------------------
-/// Whether the displacements at the end are nothing but the rounding of a way that comes back, such
-/// as a full turn, or 0 throughout.
+/// Whether the final displacements are 0, or only the rounding error of a closed path such as a
+/// full turn.
 bool Warper::Implementation::endsWhereItBegins(
   const WarpMotion& path, std::vector<double>& displacement) const
 {
-  // Full turns come back at their end alone, unless they are several: at no common fraction.
+  // A single full turn returns only at its end; several turns have no common fraction with these
+  // samples.
   constexpr double rounding = 1e-9, somewhere = 0.3819660112501051;
   path(1.0, displacement.data());
   const double end = this->checkDisplacement(displacement.data());
@@ -250,7 +251,7 @@ WarpResult Warper::Implementation::run(const WarpMotion& motion, const WarpMotio
   }
   else
   {
-    // Methods that untangle try a single step first.
+    // Methods with untangling try a single step first.
     control.proceed(0.0);
     this->First.run(displacement.data(), 1.0, control, result.points);
     const bool follows = result.invertedAfter > 0 || (result.still && this->Options.steps == 0);
@@ -260,12 +261,12 @@ WarpResult Warper::Implementation::run(const WarpMotion& motion, const WarpMotio
     }
   }
   this->explain(control);
-  this->ranks().exchange(result.points.data(), 3); // also to points without a cell here
+  this->ranks().exchange(result.points.data(), 3); // also to points without a local cell
   return result;
 }
 
 //------------------------------------------------------------------------------
-/// Second attempt, in short steps that are untangled one by one, where a single step left inverted
+/// The second attempt, with short steps that are each untangled, if a single step left inverted
 /// elements although the moved boundary is valid.
 void Warper::Implementation::followMotion(
   const WarpMotion& path, const double* displacement, WarpControl& control)
@@ -280,7 +281,7 @@ void Warper::Implementation::followMotion(
       return;
     }
   }
-  // The first attempt is kept in case the second one does not reach the end.
+  // Keep the first attempt in case the second does not reach the end.
   const WarpResult before = result;
   result.impossible = 0;
   warpInSteps(this->Input, this->Parts, path, 0, true, control);
@@ -292,7 +293,7 @@ void Warper::Implementation::followMotion(
   }
   else if (result.amount < 1.0 && wholeWay)
   {
-    // The mesh with the fewest inverted elements where the boundary should be.
+    // Keep the mesh with the fewest inverted elements at the final boundary position.
     std::vector<WarpRecord> history = std::move(result.history);
     const bool aborted = result.aborted, timeLimit = result.timeLimit;
     result = before;
@@ -329,13 +330,13 @@ BoundaryState Warper::Implementation::examineBoundary(const double* points) cons
     }
   }
   state.inverted = this->ranks().sum(state.inverted);
-  if (this->Parts.dimension() != Dimension::Surface) // whose boundary is curves in space
+  if (this->Parts.dimension() != Dimension::Surface) // whose boundary consists of curves in space
   {
     state.crossing = this->MovedBoundary.crossings(points);
   }
   if (state.crossing.pairs > 0)
   {
-    // Boundaries that touch from the start, such as cracks, may go on to.
+    // Boundaries that touch from the start, such as cracks, may continue to touch.
     state.crossing.pairs =
       std::max(Index(0), state.crossing.pairs - this->MovedBoundary.crossings(view.points).pairs);
   }
@@ -349,7 +350,8 @@ void Warper::Implementation::explain(WarpControl& control)
   WarpResult& result = control.result();
   if (this->Parts.freePoints() == 0)
   {
-    control.addMessage("There are no points between the prescribed ones: nothing had to be found.");
+    control.addMessage("There are no points between the prescribed ones: nothing had to be "
+                       "computed.");
   }
   if (!result.attempts.empty() && !result.still)
   {
@@ -359,8 +361,8 @@ void Warper::Implementation::explain(WarpControl& control)
   {
     control.addMessage(
       this->Options.steps == 1 && this->Options.method != WarpMethod::SmallStepFemwarp
-        ? "The prescribed points end where they began, so that nothing moves. Where they turn full "
-          "circle, take several steps."
+        ? "The prescribed points end where they began, so that nothing moves. For a full turn, "
+          "use several steps."
         : "The prescribed points end where they began.");
   }
   if (this->Parts.loose() > 0)
@@ -416,7 +418,7 @@ void Warper::Implementation::explain(WarpControl& control)
 }
 
 //------------------------------------------------------------------------------
-/// What a mesh on several ranks is deformed by.
+/// The data for deforming a mesh on several ranks.
 struct Warper::Local
 {
   Local(const DistributedMesh& spread, bool mirrored, std::vector<Index> ids, int threads)

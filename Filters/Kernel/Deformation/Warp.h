@@ -24,33 +24,34 @@ namespace tautline
 {
 /**
  * @class tautline::Warper
- * @brief Deforms a mesh; keeps matrices, preconditioners and former solutions for the next
+ * @brief Deforms a mesh; keeps matrices, preconditioners and previous solutions for the next
  * boundary position.
  */
 class TAUTLINE_SOLVERS_EXPORT Warper
 {
 public:
   /**
-   * @brief The mesh and the arrays of the options stay alive. Of a surface in space, an element
-   * counts as inverted where it is folded over its neighbours; untangling takes one rank, and no
-   * optimization follows it. Throws Error for elements that are not valid (how many, the first),
-   * curved cells (which vtkMeshWarp takes), no prescribed point, and options out of range.
+   * @brief The mesh and the arrays of the options must outlive this object. On a surface in space,
+   * an element is inverted if it is folded over its neighbors; untangling runs on one rank and is
+   * not followed by optimization. Throws Error for invalid elements (stating their number and the
+   * first), curved cells (which vtkMeshWarp supports), no prescribed point, and options out of
+   * range.
    */
   Warper(const Mesh& mesh, const WarpOptions& options);
 
   /**
-   * @brief The same for a mesh on several ranks. Collective, as warp() is then:
-   * points, displacements and flags are those of the local points, and a prescribed point is one,
-   * with the same displacement, on all ranks that have it. The numbers of the result are those of
-   * the whole mesh. Untangling and optimization are those of untangle() and optimize() on several
-   * ranks, whose order does not depend on the ranks.
-   * @param mesh stays alive; volume, or planar at right angles to an axis; all cells of one
-   * dimension. Its points are others within warp(), and as before when it returns.
-   * @param mirrored the mesh is reversed throughout, see Mesh::setMirrored(); the same on all ranks
-   * @param communicator of MPI, with the ranks of the mesh
-   * @param ids one per local point: the pointwise methods take the prescribed points in this order
-   * @param options prescribed must be given; tensors are of local cells, the same on all ranks that
-   * have a cell
+   * @brief The same for a mesh on several ranks. Collective, as is warp() then. Points,
+   * displacements and flags are local, and a prescribed point must be prescribed, with the same
+   * displacement, on all ranks that have it. The numbers in the result refer to the whole mesh.
+   * Untangling and optimization use untangle() and optimize() on several ranks, whose order does
+   * not depend on the ranks.
+   * @param mesh must outlive this object; a volume, or planar and perpendicular to an axis; all
+   * cells of one dimension. Its points are modified within warp() and restored when it returns.
+   * @param mirrored all elements are reversed, see Mesh::setMirrored(); the same on all ranks
+   * @param communicator the MPI communicator with the ranks of the mesh
+   * @param ids one per local point: the pointwise methods use the prescribed points in this order
+   * @param options prescribed is required; tensors refer to local cells and are the same on all
+   * ranks that have a cell
    */
   Warper(DistributedMesh& mesh, bool mirrored, std::vector<Index> ids, Communicator communicator,
     const WarpOptions& options);
@@ -58,19 +59,20 @@ public:
 
   /**
    * @brief The positions of all points after the prescribed ones have moved by `displacement` (3
-   * per point of the mesh; those of other points are not read). Throws Error for displacements that
-   * are not finite (how many, the first point), or lead out of the plane of a planar mesh.
+   * per point of the mesh; only prescribed points are read). Throws Error for displacements that
+   * are not finite (stating their number and the first point) or lead out of the plane of a planar
+   * mesh.
    */
   WarpResult warp(const double* displacement);
 
   /**
-   * @brief The same where the boundary does not move along straight lines: `motion(amount,
+   * @brief The same for a boundary that does not move along straight lines: `motion(amount,
    * displacement)` writes the displacements of the prescribed points from the mesh at an amount of
    * the motion, 0 < amount <= 1. Only matters with more than one step.
    */
   WarpResult warp(const std::function<void(double amount, double* displacement)>& motion);
 
-  /// Replaces the time limit of the options, for the next calls; 0: none.
+  /// Replaces the time limit of the options, for subsequent calls; 0: none.
   void setMaximumSeconds(double seconds);
 
 private:

@@ -13,9 +13,9 @@
 namespace tautline
 {
 /**
- * @brief Calls work(i) for each i below n in several runs, each on all threads; reports progress
- * between the runs.
- * @param from fraction of the deformation done before the first run; the last one ends at 1
+ * @brief Calls work(i) for each i below n in several batches, each on all threads; reports progress
+ * between the batches.
+ * @param from fraction of the deformation done before the first batch; the last one ends at 1
  * @return false if the deformation had to stop before the end
  */
 template <class Work>

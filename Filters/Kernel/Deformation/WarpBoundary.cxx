@@ -60,13 +60,13 @@ WarpBoundary::WarpBoundary(
   }
   std::sort(
     facets.begin(), facets.end(), [](const Facet& a, const Facet& b) { return a.key < b.key; });
-  // Facets of one cell only; a quadrilateral becomes two triangles.
+  // Keep facets of one cell only; a quadrilateral becomes two triangles.
   for (std::size_t i = 0, j = 0; i < facets.size(); i = j)
   {
     for (j = i + 1; j < facets.size() && facets[j].key == facets[i].key; ++j)
     {
     }
-    // Of the facets at an own point all cells are here.
+    // For facets at an owned point, all cells are local.
     if (j - i > 1 || !ranks.owns(facets[i].key[0]))
     {
       continue;
@@ -83,7 +83,7 @@ WarpBoundary::WarpBoundary(
 //------------------------------------------------------------------------------
 namespace
 {
-/// The sign of the volume of a tetrahedron; 0 where it is no more than rounding.
+/// The sign of the volume of a tetrahedron; 0 if it is within the rounding error.
 int side(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
 {
   constexpr double rounding = 1e-12;
@@ -135,8 +135,8 @@ public:
     {
       return;
     }
-    // At least twice the mean extent. Few cubes along the whole, so that a facet much larger than
-    // the others does not take too many.
+    // Cubes are at least twice the mean extent, with few along the whole box, so that a facet much
+    // larger than the others does not meet too many.
     constexpr double maxAlong = 512;
     const Vec3 extent = high - this->Low;
     const double longest = std::max({ extent[0], extent[1], extent[2] });
@@ -164,7 +164,8 @@ public:
         for (std::size_t j = i + 1; j < end; ++j)
         {
           const std::int32_t a = this->Entries[i].second, b = this->Entries[j].second;
-          // Each pair counts in one cube only: that of the lower corner of what the boxes share.
+          // Each pair is visited in one cube only: the cube of the lower corner of the box
+          // intersection.
           if (this->keyOfOverlap(this->Boxes[a], this->Boxes[b]) == key)
           {
             visit(a, b);
@@ -249,7 +250,7 @@ WarpBoundary::Crossing WarpBoundary::crossings(const double* points) const
   {
     return this->crossingsAmong(this->Facets, points);
   }
-  // The facets go to the first rank with cells, whose mesh has the plane of a planar one.
+  // Send the facets to the first rank with cells, whose mesh defines the plane of a planar mesh.
   struct Corner
   {
     Index number;

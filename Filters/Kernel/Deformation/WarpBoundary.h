@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file WarpBoundary.h
- * @brief Where a moved boundary runs into itself.
- * Internal: not installed.
+ * @brief Self-intersections of a moved boundary. Internal: not installed.
  */
 #ifndef tautline_WarpBoundary_h
 #define tautline_WarpBoundary_h
@@ -13,13 +12,13 @@ namespace tautline
 {
 /**
  * @class tautline::WarpBoundary
- * @brief The prescribed boundary of a mesh, and where it crosses itself after a motion.
+ * @brief Finds self-intersections of the prescribed boundary of a mesh after a motion.
  */
 class WarpBoundary
 {
 public:
-  /// Finds the edges (2D) or faces (3D) of one cell alone whose points are all prescribed.
-  /// On several ranks each facet is on that which owns its first point.
+  /// Finds the edges (2D) or faces (3D) of one cell alone whose points are all prescribed. On
+  /// several ranks, each facet is on the rank that owns its first point.
   WarpBoundary(
     const Mesh& mesh, const std::vector<unsigned char>& prescribed, const Ranks& ranks = {});
 
@@ -29,9 +28,9 @@ public:
     std::array<Index, 2> first = { 0, 0 }; ///< a point of each of the first pair
   };
   /**
-   * @brief Counts pairs without a common point that meet: edges that cross or touch, triangles that
-   * an edge of the other goes right through.
-   * On several ranks one of them has all facets for it: collective.
+   * @brief Counts intersecting pairs without a common point: edges that cross or touch, and
+   * triangles pierced by an edge of the other. Collective: on several ranks, all facets are
+   * gathered on one rank.
    * @param points 3 per point of the mesh
    */
   Crossing crossings(const double* points) const;

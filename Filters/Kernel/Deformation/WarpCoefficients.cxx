@@ -11,7 +11,8 @@ namespace tautline
 {
 namespace
 {
-/// Sums below this fraction of the largest are rounding: nothing moves along their axis.
+/// Sums below this fraction of the largest are rounding errors: there is no motion along their
+/// axis.
 constexpr double rounding = 1e-12;
 
 /// Share of the isotropic operator in localGradients().
@@ -74,7 +75,8 @@ void forEachPrescribed(const std::vector<unsigned char>& prescribed, const doubl
   }
 }
 
-/// Scales the largest sum to 1 and sets those that are rounding to 0. False if nothing moves.
+/// Scales the largest sum to 1 and sets sums within the rounding error to 0. False if nothing
+/// moves.
 bool normalize(Eigen::Vector3d& sums)
 {
   const double largest = sums.maxCoeff();
@@ -105,7 +107,7 @@ SymmetricTensor displacementSums(
 SymmetricTensor principalDirections(
   const std::vector<unsigned char>& prescribed, const double* displacement, const Ranks& ranks)
 {
-  // In units of the largest displacement, so that squares neither vanish nor overflow.
+  // In units of the largest displacement, so that squares neither underflow nor overflow.
   double largest = 0;
   forEachPrescribed(prescribed, displacement, ranks,
     [&largest](const auto& d) { largest = std::max(largest, d.cwiseAbs().maxCoeff()); });
@@ -122,7 +124,7 @@ SymmetricTensor principalDirections(
   const Eigen::Vector3d& values = solver.eigenvalues(); // ascending
   const Eigen::Matrix3d& axes = solver.eigenvectors();
 
-  // The average of |d . e| over the directions e of a plane is 2 / pi |d|, of space |d| / 2.
+  // The average of |d . e| over the directions e is 2 / pi |d| in a plane and |d| / 2 in space.
   constexpr double coincide = 1e-6;
   constexpr double average[4] = { 0, 1, 2 / Pi, 0.5 };
   Eigen::Vector3d sums = Eigen::Vector3d::Zero();
@@ -152,7 +154,7 @@ SymmetricTensor principalDirections(
     }
     first = end;
   }
-  // An eigenvalue that is rounding has a square root that is not small: its sum is set to 0.
+  // The square root of an eigenvalue within the rounding error is not small: its sum is set to 0.
   for (int k = 0; k < 3; ++k)
   {
     sums[k] = values[k] > rounding * values[2] ? sums[k] : 0.0;

@@ -4,8 +4,8 @@
  * @brief The coefficients of anisotropic FEMWARP, section 4.9.1, from a motion.
  * Internal: not installed.
  *
- * The first two functions take one flag per point and 3 displacements per point; only those of
- * flagged points are read, and the own ones counted.
+ * The first two functions take one flag per point and 3 displacements per point; only flagged
+ * points are read, and only owned points are counted.
  */
 #ifndef tautline_WarpCoefficients_h
 #define tautline_WarpCoefficients_h
@@ -28,7 +28,7 @@ SymmetricTensor displacementSums(
 
 /**
  * @brief The same along the principal directions of the motion: the eigenvectors of the sum of d
- * d^T. Where eigenvalues coincide (within 1e-6 of the largest) the sums are averages over all
+ * d^T. If eigenvalues coincide (within 1e-6 of the largest), the sums are averages over all
  * directions of their space, so that the tensor turns with the motion. The identity where nothing
  * moves.
  */
@@ -37,13 +37,13 @@ SymmetricTensor principalDirections(
 
 /**
  * @brief A tensor per cell, 6 numbers each, from the displacements u of all points, 3 each; on
- * several ranks per local cell, with the mean of the whole mesh:
+ * several ranks, per local cell with the mean over the whole mesh:
  *
  *     (1 + |grad u|^2 / mean |grad u|^2) (I / 20 + d d^T / |d|^2)
  *
  * d is the mean displacement of the cell's points; grad u is the linear map that fits their
- * displacements best, which is exact for simplices. Cells that deform much get stiff along the
- * motion, and the motion spreads to those around them. The identity where nothing moves.
+ * displacements best, which is exact for simplices. Strongly deformed cells become stiff along the
+ * motion, which then spreads to the cells around them. The identity where nothing moves.
  */
 std::vector<double> localGradients(
   const MeshView& mesh, const double* displacement, const Ranks& ranks);

@@ -23,7 +23,8 @@ namespace tautline
 class WarpControl
 {
 public:
-  /// Both stay alive; the result gets the flags timeLimit and aborted, and the message.
+  /// Both must outlive this object; the result receives the flags timeLimit and aborted, and the
+  /// message.
   WarpControl(const WarpOptions& options, WarpResult& result, const Ranks& ranks = {})
     : Options(options)
     , Result(result)
@@ -36,7 +37,7 @@ public:
 
   /// Seconds since the start.
   double elapsed() const { return this->Time.seconds(); }
-  /// Seconds left, for the limits of solvers; 0 where there is no limit, else above 0.
+  /// Seconds left, for the limits of solvers; 0 if there is no limit, otherwise above 0.
   double secondsLeft() const
   {
     constexpr double smallest = 1e-3; // 0 would mean no limit
@@ -45,27 +46,27 @@ public:
       : 0.0;
   }
 
-  /// The part of the whole, 0 to 1, that fractions passed to proceed() are fractions of.
+  /// Sets the range within 0 to 1 to which the fractions passed to proceed() are mapped.
   void setRange(double from, double to)
   {
     this->From = from;
     this->To = to;
   }
-  /// Reports progress; false when the deformation has to stop. The result then states why. The
-  /// ranks stop together: collective.
+  /// Reports progress; false if the deformation has to stop. The result then states the reason.
+  /// Collective: all ranks stop together.
   bool proceed(double fraction)
   {
     this->watch(fraction);
     return this->agree();
   }
-  /// Whether to go on, after what a rank has watched: collective.
+  /// Whether to continue, considering the results of watch() on all ranks. Collective.
   bool agree()
   {
     this->Result.timeLimit = this->TheRanks.any(this->Result.timeLimit);
     this->Result.aborted = this->TheRanks.any(this->Result.aborted);
     return !this->stopped();
   }
-  /// The same within work that does not communicate; proceed() or agree() follows on all ranks.
+  /// The same within work that does not communicate; all ranks must then call proceed() or agree().
   bool watch(double fraction)
   {
     if (this->Time.reached(this->Options.maximumSeconds))

@@ -77,8 +77,8 @@ void ElasticWarp::assemble(WarpControl& control)
 }
 
 //------------------------------------------------------------------------------
-/// A body of one material follows affine motions exactly: they are subtracted then, and only the
-/// rest is solved for.
+/// A homogeneous body follows affine motions exactly: they are subtracted, and only the rest is
+/// solved for.
 bool ElasticWarp::solve(
   const double* displacement, WarpControl& control, std::vector<double>& moved)
 {
@@ -132,14 +132,14 @@ std::vector<double> ElasticWarp::warp(const double* displacement, WarpControl& c
   const bool iterative = options.method == WarpMethod::IterativeStiffening;
   if (iterative && !this->Uniform)
   {
-    // Each boundary position begins with a body of one material.
+    // Each boundary position starts with a homogeneous body.
     this->Stiffening.assign(view.numberOfCells, 1.0);
     this->System.reset();
   }
   std::vector<double> best, moved, points(3 * view.numberOfPoints);
   std::vector<signed char> validity(view.numberOfCells);
   Index fewest = std::numeric_limits<Index>::max();
-  constexpr double stiffest = 1e12; // nearly rigid, and the matrix can still be factored
+  constexpr double stiffest = 1e12; // nearly rigid, while the matrix can still be factored
   for (int round = 0;; ++round)
   {
     if (!this->System)
@@ -190,7 +190,7 @@ std::vector<double> ElasticWarp::warp(const double* displacement, WarpControl& c
     }
     if (round == options.maximumStiffenings)
     {
-      control.addMessage("Stiffening ended after " + std::to_string(round) + " rounds with " +
+      control.addMessage("Stiffening stopped after " + std::to_string(round) + " rounds with " +
         std::to_string(fewest) + " inverted elements.");
       return best;
     }

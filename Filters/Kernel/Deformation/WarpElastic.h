@@ -4,11 +4,11 @@
  * @brief Deforms a mesh as an elastic body whose small or inverted elements are stiffer.
  * Internal: not installed.
  *
- * IterativeStiffening: that step of "Untangling Before Newton" (S. P. Sastry, S. M. Shontz and S.
- * A. Vavasis) that the dissertation compares with: inverted elements are made stiffer and the
- * linear problem is solved again. JacobianStiffening: K. Stein, T. Tezduyar and R. Benson, "Mesh
- * moving techniques for fluid-structure interactions with large displacements", J. Appl. Mech. 70,
- * 2003: the Jacobian J of an element enters as J (J_0 / J)^chi, J_0 the mean.
+ * IterativeStiffening: the stiffening step of "Untangling Before Newton" (S. P. Sastry, S. M.
+ * Shontz and S. A. Vavasis), used for comparison in the dissertation: inverted elements are made
+ * stiffer and the linear problem is solved again. JacobianStiffening: K. Stein, T. Tezduyar and R.
+ * Benson, "Mesh moving techniques for fluid-structure interactions with large displacements", J.
+ * Appl. Mech. 70, 2003: the Jacobian J of an element enters as J (J_0 / J)^chi, J_0 the mean.
  */
 #ifndef tautline_WarpElastic_h
 #define tautline_WarpElastic_h
@@ -25,7 +25,7 @@ namespace tautline
 class ElasticWarp
 {
 public:
-  /// Sets the stiffness of the elements; mesh and parts stay alive.
+  /// Sets the stiffness of the elements; mesh and parts must outlive this object.
   ElasticWarp(const Mesh& mesh, const WarpParts& parts, WarpControl& control);
 
   /// Displacements of all points, 3 each.
@@ -40,7 +40,7 @@ private:
   int Components;
   std::vector<double> Stiffening; ///< of the next assembly
   std::unique_ptr<WarpSystem> System;
-  bool Uniform = true; ///< what System has
+  bool Uniform = true; ///< whether System has uniform stiffness
 };
 }
 #endif

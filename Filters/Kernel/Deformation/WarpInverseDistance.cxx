@@ -11,20 +11,19 @@ namespace tautline
 namespace
 {
 constexpr double LargestPower = 20.0;
-/// Squared distance below which points are at one place: beyond, the largest power is far from
-/// overflow.
+/// Squared distance below which points coincide; above it, the largest power is far from overflow.
 constexpr double Coincident = 1e-28;
 constexpr std::size_t InverseDistanceLeafSize = 16;
-/// A group of points counts as a whole from a distance at which the third term of its expansion,
-/// for points all in one direction, is this part of the first. (The groups lie around their
-/// centres: what is left of it is far less.)
+/// A group of points is treated as a whole from the distance at which the third term of its
+/// expansion, for points all in one direction, is this fraction of the first. (Groups surround
+/// their centers, so the actual third term is far smaller.)
 constexpr double ThirdTerm = 0.05;
-/// The same of points that turn: close to a wall, where cells are small, groups that are far have
-/// no weight.
+/// The same for points that turn: close to a wall, where cells are small, distant groups have no
+/// weight.
 constexpr double TurningThirdTerm = 0.5;
-constexpr double LargestOpening = 0.5; ///< radius of a group over its distance, whatever the power
+constexpr double LargestOpening = 0.5; ///< radius of a group over its distance, for any power
 
-/// The squared radius of a group over its squared distance up to which it counts as a whole.
+/// The squared radius of a group over its squared distance up to which it is treated as a whole.
 double squaredOpening(double power, double thirdTerm)
 {
   const double opening =
@@ -94,8 +93,8 @@ private:
   double Power, Opening;
 };
 
-/// (1 / distance)^3 + (stiff / distance)^5, distances relative to the size of the whole: the second
-/// term makes what is closer than `stiff` follow the closest points alone.
+/// (1 / distance)^3 + (stiff / distance)^5, with distances relative to the overall size: the second
+/// term makes points closer than `stiff` follow only the closest wall points.
 class TwoPowers
 {
 public:
@@ -132,7 +131,7 @@ private:
   double NearOpening = squaredOpening(NearPower, TurningThirdTerm);
 };
 
-/// A displacement at a place, and where points turn its derivatives along x, y and z.
+/// A displacement at a position and, if points turn, its derivatives along x, y and z.
 template <bool Turns>
 using Jet = std::array<double, Turns ? 12 : 3>;
 
@@ -146,7 +145,7 @@ void addTo(std::array<double, Size>& sum, double factor, const std::array<double
   }
 }
 
-/// What a jet at the origin gives at u.
+/// Evaluates at u a jet given at the origin.
 template <bool Turns>
 Vec3 valueAt(const Jet<Turns>& jet, const Vec3& u)
 {
@@ -170,7 +169,7 @@ struct Source
   Jet<Turns> jet;
 };
 
-/// Sums over the sources of a node about its centre, of shares and of jets there.
+/// Moments of the sources of a node about its center: of shares and of jets.
 template <bool Turns>
 struct Moments
 {
@@ -300,7 +299,7 @@ private:
   Law Weights;
   PointTree Tree;
   std::vector<Source<Turns>> Points;  ///< in the order of the tree
-  std::vector<Moments<Turns>> Groups; ///< of its nodes; of a leaf empty
+  std::vector<Moments<Turns>> Groups; ///< of its nodes; empty for a leaf
 };
 
 /// The motion of the free points by weighted means.
@@ -315,8 +314,8 @@ std::vector<double> warpByMeans(const PrescribedMotion& motion, std::vector<Sour
   return complete ? motion.displacements(rest) : std::vector<double>();
 }
 
-/// The mean of the displacements, weighted by the shares of the wall, and the largest distance of
-/// one from it: how far points move against each other.
+/// The mean of the displacements, weighted by the wall shares, and the largest deviation from it:
+/// the relative motion of the points.
 double spreadOf(const PrescribedMotion& motion)
 {
   double area = 0, largest = 0;

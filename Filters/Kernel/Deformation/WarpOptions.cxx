@@ -14,7 +14,7 @@ struct MethodTraits
   bool known = false, anisotropic = false, untangles = false;
 };
 
-/// A switch without a default: the compiler reports a method that is missing here.
+/// A switch without a default, so that the compiler reports a missing method.
 MethodTraits traitsOf(WarpMethod method)
 {
   MethodTraits traits;
@@ -67,7 +67,7 @@ bool untangles(WarpMethod method)
 
 bool isPositiveSemidefinite(const double* t)
 {
-  // Minors; rounding of a product of directions may leave them a little below 0.
+  // The minors of a product of directions may be slightly below 0 by rounding.
   constexpr double rounding = 1e-12;
   const double size = std::max({ t[0], t[1], t[2] });
   const double det = t[0] * (t[1] * t[2] - t[4] * t[4]) - t[3] * (t[3] * t[2] - t[4] * t[5]) +

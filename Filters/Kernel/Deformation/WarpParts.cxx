@@ -48,8 +48,9 @@ WarpParts::WarpParts(const Mesh& mesh, const unsigned char* prescribed, const Ra
   }
   this->Part = ranks.numberSets(sets, used, this->Count);
 
-  // Parts without a prescribed point are loose: their points are held where they are.
-  std::vector<double> prescribedOf(this->Count, 0.0); // points of each part
+  // Parts without a prescribed point are loose: their points are held fixed.
+  // the number of prescribed points of each part
+  std::vector<double> prescribedOf(this->Count, 0.0);
   for (Index i = 0; i < n; ++i)
   {
     if (this->Prescribed[i] && used[i] && ranks.owns(i))
@@ -73,7 +74,7 @@ WarpParts::WarpParts(const Mesh& mesh, const unsigned char* prescribed, const Ra
 //------------------------------------------------------------------------------
 std::vector<char> WarpParts::moving(const double* displacement) const
 {
-  std::vector<double> moving(this->Count, 0.0); // points of each part
+  std::vector<double> moving(this->Count, 0.0); // the number of prescribed points of each part
   for (std::size_t i = 0; i < this->Part.size(); ++i)
   {
     const double* d = displacement + 3 * i;
@@ -109,7 +110,7 @@ struct Fit
 constexpr std::size_t Components = 3; // of a vector
 
 /// Replaces the second moments by their pseudo-inverse: directions in which the points extend by
-/// less than a small fraction of their extent count as not spanned.
+/// less than a small fraction of their extent are treated as not spanned.
 void invertMoments(Fit& fit)
 {
   constexpr double flat = 1e-6;
@@ -174,7 +175,7 @@ std::vector<AffineMotion> WarpParts::affine(const double* points, const double* 
     { Components * Components });
   std::for_each(fits.begin(), fits.end(), invertMoments);
 
-  // The second round fits what rounding left of the first.
+  // The second round fits the rounding error of the first.
   constexpr int rounds = 2;
   for (int round = 0; round < rounds; ++round)
   {

@@ -38,7 +38,7 @@ struct PrescribedPoint
 
 /**
  * @class tautline::WarpParts
- * @brief Which points are prescribed, free or held, and which parts of the mesh they belong to.
+ * @brief Classifies points as prescribed, free or held, and assigns them to parts of the mesh.
  * Parts are connected by cells and numbered by their smallest points.
  */
 class WarpParts
@@ -46,24 +46,24 @@ class WarpParts
 public:
   /**
    * @param prescribed one flag per point; null, on one rank only: the points of the boundary
-   * @param ranks what is counted here is that of all of them
+   * @param ranks counts are totals over all of them
    */
   WarpParts(const Mesh& mesh, const unsigned char* prescribed, const Ranks& ranks = {});
 
   const Ranks& ranks() const { return this->TheRanks; }
-  /// Of the whole mesh.
+  /// The dimension of the whole mesh.
   Dimension dimension() const { return this->Dim; }
 
   const std::vector<unsigned char>& prescribed() const { return this->Prescribed; }
   /// The connected part of a point; -1 outside all cells.
   Index part(Index point) const { return this->Part[point]; }
   Index parts() const { return this->Count; }
-  /// Parts without a prescribed point: they stay.
+  /// The number of parts without a prescribed point, which do not move.
   Index loose() const { return this->Loose; }
   Index prescribedPoints() const { return this->PrescribedPoints; }
   Index freePoints() const { return this->FreePoints; }
-  /// 1 for points whose place is no unknown: prescribed, outside all cells, or in a part that is
-  /// loose.
+  /// 1 for points whose position is not an unknown: prescribed, outside all cells, or in a part
+  /// that is loose.
   const std::vector<unsigned char>& held() const { return this->Held; }
 
   /// The prescribed points of several ranks, in the order of their ids. Collective.
@@ -75,9 +75,9 @@ public:
   std::vector<char> moving(const double* displacement) const;
 
   /**
-   * @brief For each part the affine motion that is closest to the prescribed displacements, by
-   * least squares; exact, to rounding, where they are affine. Directions the prescribed points do
-   * not span have no derivative.
+   * @brief For each part: the least-squares affine fit to the prescribed displacements; exact, up
+   * to rounding, if they are affine. Derivatives in directions that the prescribed points do not
+   * span are 0.
    * @param points of the mesh, 3 each
    */
   std::vector<AffineMotion> affine(const double* points, const double* displacement) const;

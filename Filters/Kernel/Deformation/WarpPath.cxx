@@ -12,12 +12,13 @@ namespace
 using Matrix = Eigen::Matrix3d;
 using Vector = Eigen::Vector3d;
 
-/// Extents below this fraction of the largest count as 0: the points lie in a plane or on a line.
+/// Extents below this fraction of the largest are treated as 0: the points lie in a plane or on a
+/// line.
 constexpr double FlatExtent = 1e-6;
-/// Largest fraction of the displacements (root mean square) that an affine map may leave.
+/// The largest residual of an affine map, as a fraction of the displacements (root mean square).
 constexpr double AffineResidual = 0.05;
 
-/// The connected component of each point, -1 where nothing is prescribed: points are joined by
+/// The connected component of each point, -1 if it is not prescribed. Points are connected by
 /// facets (edges of planar cells) all of whose points are prescribed. Components are numbered by
 /// their smallest points.
 std::vector<Index> findPieces(const Mesh& mesh, const WarpParts& parts, std::size_t& pieces)
@@ -121,8 +122,8 @@ std::vector<PathMoments> momentsOf(const MeshView& view, const std::vector<Index
   return moments;
 }
 
-/// Completes a map that is given in a plane only: the normal of the plane follows the plane. False
-/// if the plane collapses to a line, or a planar mesh is mirrored.
+/// Completes a map that is only defined in a plane: the normal rotates with the plane. False if the
+/// plane collapses to a line, or a planar mesh is mirrored.
 bool completePlane(const Matrix& axes, bool planarMesh, Matrix& map)
 {
   const Vector normal = axes.col(0);
@@ -139,8 +140,8 @@ bool completePlane(const Matrix& axes, bool planarMesh, Matrix& map)
   return !planarMesh || image.dot(normal) >= 0;
 }
 
-/// The linear part of the affine map that fits a component best (least squares). False where the
-/// points do not determine it, or where it leaves too much of the displacements.
+/// The linear part of the affine map that fits a component best (least squares). False if the
+/// points do not determine it, or if its residual is too large.
 bool fitMap(const PathMoments& m, bool planarMesh, Matrix& map)
 {
   const Eigen::SelfAdjointEigenSolver<Matrix> eigen(m.points);
@@ -217,7 +218,7 @@ WarpPath::WarpPath(const Mesh& mesh, const WarpParts& parts, const double* displ
 }
 
 //------------------------------------------------------------------------------
-/// Displacement of the point x that moves with a component (Rodrigues' rotation formula).
+/// The displacement of the point x moving with a component (Rodrigues' rotation formula).
 Vec3 WarpPath::place(const Piece& piece, double amount, const Vec3& x) const
 {
   const Vec3 y = x - piece.center;

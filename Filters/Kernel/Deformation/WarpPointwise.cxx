@@ -11,10 +11,11 @@ namespace tautline
 {
 namespace
 {
-/// Second moments of the prescribed points below this fraction of the largest count as 0: the
+/// Second moments of the prescribed points below this fraction of the largest are treated as 0: the
 /// points lie in a plane or on a line.
 constexpr double RankTolerance = 1e-14;
-/// Relative to the largest displacement: an affine motion to rounding.
+/// Relative to the largest displacement: a residual below this is rounding error of an affine
+/// motion.
 constexpr double AffineTolerance = 1e-14;
 }
 
@@ -80,8 +81,8 @@ void PrescribedMotion::measure()
 }
 
 //------------------------------------------------------------------------------
-/// Least squares with the pseudo-inverse of the second moments: where the points do not determine
-/// an affine motion, this is the smallest one.
+/// Least squares with the pseudo-inverse of the second moments: if the points do not determine an
+/// affine motion, this gives the smallest one.
 void PrescribedMotion::fitAffine()
 {
   Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
@@ -110,7 +111,7 @@ void PrescribedMotion::fitAffine()
       }
     }
   }
-  // The second pass corrects the rounding of the first.
+  // The second pass corrects the rounding error of the first.
   for (int pass = 0; pass < 2; ++pass)
   {
     std::array<Vec3, 4> sums = {};

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file WarpPointwise.h
- * @brief The methods of deformation that are compared with FEMWARP and need no partial differential
- * equation: inverse distance weighting, radial basis functions and weighted Laplacian smoothing.
- * Internal: not installed.
+ * @brief The deformation methods that are compared with FEMWARP and do not solve a partial
+ * differential equation: inverse distance weighting, radial basis functions and weighted Laplacian
+ * smoothing. Internal: not installed.
  *
  * All three move the points by the affine motion that fits the prescribed displacements best (least
- * squares) and treat only the rest; every method is exact for an affine motion. They work in
- * lengths relative to the extent of the prescribed points, so that the unit of length does not
- * matter.
+ * squares) and process only the rest, so that every method is exact for an affine motion. Lengths
+ * are relative to the extent of the prescribed points, so that the unit of length does not matter.
  */
 #ifndef tautline_WarpPointwise_h
 #define tautline_WarpPointwise_h
@@ -21,33 +20,32 @@ namespace tautline
 {
 /**
  * @brief Displacements of all points, 3 each, by the method of Shontz and Vavasis (2003); bitwise
- * the same for any number of threads. Each point that is not prescribed is
- * a convex combination of its neighbours in the initial mesh, of all such combinations the one with
- * the largest product of weights; it stays that. Neighbours are the other points of the cells
- * around; where the point is not within their hull (surfaces: in the tangent plane), all count the
- * same. Points of parts without a prescribed point stay. The linear system is solved to
- * options.tolerance.
+ * the same for any number of threads. In the initial mesh, each point that is not prescribed is a
+ * convex combination of its neighbors; of all such combinations, the one with the largest product
+ * of weights is preserved. Neighbors are the other points of the surrounding cells; if the point is
+ * not within their convex hull (surfaces: in the tangent plane), all weights are equal. Points of
+ * parts without a prescribed point do not move. The linear system is solved to options.tolerance.
  *
  * `prescribed` has a flag per point; `displacement` has 3 numbers per point of the mesh and is
- * read, and returned as it is, where the flag is set. Without any prescribed point nothing moves.
- * The result is empty when the control stopped the work. Options come from the control.
+ * read, and returned unchanged, where the flag is set. Without any prescribed point, nothing moves.
+ * The result is empty if the control stopped the work. Options come from the control.
  */
 TAUTLINE_SOLVERS_EXPORT std::vector<double> warpByWeightedLaplacian(const Mesh& mesh,
   const std::vector<unsigned char>& prescribed, const double* displacement, WarpControl& control);
 
 class WarpParts;
 /**
- * @brief The same on several ranks, for the local points: the affine motion is fitted to
- * the prescribed points of all, in the order of their ids, and each rank has the rows of its own
- * points. Solved by WarpSystem, so that points differ from one rank's by the tolerance. Empty, on
- * all ranks, when the control stopped the work. Collective.
+ * @brief The same on several ranks, for the local points: the affine motion is fitted to the
+ * prescribed points of all ranks, in the order of their ids, and each rank has the rows of its
+ * owned points. Solved by WarpSystem, so that the result matches the serial result up to the
+ * tolerance. Empty, on all ranks, if the control stopped the work. Collective.
  * @param mesh DistributedMesh::view(), the points of which may have moved
  */
 std::vector<double> warpByWeightedLaplacian(
   const Mesh& mesh, const WarpParts& parts, const double* displacement, WarpControl& control);
 
-/// What the three methods share: the prescribed displacements, split into an affine motion and the
-/// rest.
+/// The common part of the three methods: the prescribed displacements, split into an affine motion
+/// and the rest.
 class TAUTLINE_SOLVERS_EXPORT PrescribedMotion
 {
 public:
@@ -55,24 +53,24 @@ public:
   PrescribedMotion(const Mesh& mesh, const std::vector<unsigned char>& prescribed,
     const double* displacement, int threads, std::vector<WallPoint> walls = {});
 
-  /// Ids in the order of the places (x before y before z), then of the displacements: sums and
-  /// choices do not depend on the order of the mesh.
+  /// Ids sorted by position (x before y before z), then by displacement, so that sums and choices
+  /// do not depend on the point order of the mesh.
   const std::vector<Index>& prescribed() const { return this->Prescribed; }
   const std::vector<Index>& free() const { return this->Free; } ///< ids, ascending
-  /// A point in units of scale(), from the middle of the prescribed ones.
+  /// A point in units of scale(), relative to the mean of the prescribed points.
   Vec3 local(Index id) const;
   double scale() const { return this->Scale; }
-  /// The wall at prescribed()[i]; in the unit of the mesh.
+  /// The wall at prescribed()[i]; in mesh units.
   const WallPoint& wall(std::size_t i) const { return this->Walls[this->Prescribed[i]]; }
   /// Largest norm of a prescribed displacement.
   double largest() const { return this->Largest; }
-  /// What the affine motion leaves of the displacement of prescribed()[i].
+  /// The residual displacement of prescribed()[i] after the affine motion.
   const Vec3& rest(std::size_t i) const { return this->Rest[i]; }
   /// The displacement of prescribed()[i].
   Vec3 given(std::size_t i) const { return this->displacementOf(this->Prescribed[i]); }
   /// The derivative of the affine motion along a coordinate of local().
   const Vec3& derivative(std::size_t k) const { return this->Map[k + 1]; }
-  /// Whether the affine motion is all there is, to rounding.
+  /// Whether the motion is affine, up to rounding.
   bool affine() const { return this->Affine; }
 
   /// All displacements: the given ones, and affine motion plus rest(i) at free()[i].
@@ -93,41 +91,41 @@ private:
   double Scale = 1;
   double Largest = 0;
   bool Affine = true;
-  std::array<Vec3, 4> Map = {}; ///< displacement at the centre, and its derivatives
+  std::array<Vec3, 4> Map = {}; ///< displacement at the center, and its derivatives
   std::vector<Vec3> Rest;
 };
 
 /**
- * @brief Displacements of all points, 3 each: the prescribed ones as they are, the others by
- * inverse distance weighting (Shepard), the mean of the prescribed displacements, weighted by the
- * distance to the power -options.distancePower (above 0, at most 20). Bitwise the same for any
- * number of threads and any order of the points. Far groups of points count by their expansion to
- * second order, which differs from the sum over all points by less than 1e-4 of the largest
- * displacement. Empty when the control stopped the work; throws Error for options out of range.
+ * @brief Displacements of all points, 3 each: the prescribed ones unchanged, the others by inverse
+ * distance weighting (Shepard): the mean of the prescribed displacements, weighted by the distance
+ * to the power -options.distancePower (above 0, at most 20). Bitwise the same for any number of
+ * threads and any order of the points. Distant groups of points are approximated by their
+ * second-order expansion, which differs from the full sum by less than 1e-4 of the largest
+ * displacement. Empty if the control stopped the work; throws Error for options out of range.
  */
 TAUTLINE_SOLVERS_EXPORT std::vector<double> warpByInverseDistance(
   const PrescribedMotion& motion, WarpControl& control);
 
 /**
- * @brief The same by inverse distances with rotations (E. Luke, E. Collins, E. Blades, "A fast mesh
- * deformation method using explicit interpolation", JCP 231, 2012): each prescribed point carries
- * the rigid motion of the wall there, and a free point takes the mean of these motions, weighted by
- * the share of the wall times (L / d)^3 + (a L / d)^5, d the distance, L the largest distance of a
- * prescribed point from their mean, a L five times the largest difference of a displacement from
- * the mean one, at least L / 10. Layers turn with their wall. Rigid motions of all are exact, other
- * affine motions are not. Far groups of points count by their expansion, which differs from the sum
- * over all points by less than 1e-3 of the largest displacement. Bitwise the same for any number of
- * threads.
+ * @brief The same with inverse distances and rotations (E. Luke, E. Collins, E. Blades, "A fast
+ * mesh deformation method using explicit interpolation", JCP 231, 2012): each prescribed point has
+ * the rigid motion of the wall there, and a free point moves by the mean of these motions, weighted
+ * by the share of the wall times (L / d)^3 + (a L / d)^5, d the distance, L the largest distance of
+ * a prescribed point from their mean, a L five times the largest difference of a displacement from
+ * the mean one, at least L / 10. Layers turn with their wall. Rigid motions of the whole are exact,
+ * other affine motions are not. Distant groups of points are approximated by their expansion, which
+ * differs from the full sum by less than 1e-3 of the largest displacement. Bitwise the same for any
+ * number of threads.
  */
 TAUTLINE_SOLVERS_EXPORT std::vector<double> warpByRigidMeans(
   const PrescribedMotion& motion, WarpControl& control);
 
 /**
- * @brief The same by radial basis functions: Wendland's C2 function with the radius
+ * @brief The same with radial basis functions: Wendland's C2 function with the radius
  * options.supportRadius (0: twice the extent of the prescribed points) around as many prescribed
- * points, at most 3000, as it takes to meet each of the others within options.fitTolerance times
- * the smallest height of the cells there. The point with the largest residual over its tolerance
- * comes next, together with up to 48 that are equal to rounding; of more the first by its place.
+ * points, at most 3000, as needed to fit all others within options.fitTolerance times the smallest
+ * height of the cells there. The next point chosen has the largest ratio of residual to tolerance;
+ * up to 48 points that tie up to rounding are chosen together; of more, only the first by position.
  */
 TAUTLINE_SOLVERS_EXPORT std::vector<double> warpByRadialBasis(
   const PrescribedMotion& motion, WarpControl& control);

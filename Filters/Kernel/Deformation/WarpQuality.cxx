@@ -15,7 +15,7 @@ namespace
 {
 using Matrix = Eigen::Matrix3d;
 
-/// The shape of an element at rest against the moved one.
+/// The shape of a moved element relative to the element at rest.
 struct ElementShape
 {
   double similarity = 0; ///< (4.22)
@@ -81,7 +81,7 @@ std::vector<Vec3> pointNormals(const Mesh& mesh, const double* points)
 ElementShape shapeOf(const CellTopology& t, const Mesh& mesh, const Vec3* before, const Vec3* after)
 {
   ElementShape sum;
-  // Of a surface each cell has frames of its own.
+  // On a surface, each cell has its own frames.
   std::array<std::array<Vec3, 2>, 2> frames = { mesh.frame(), mesh.frame() };
   if (mesh.dimension() == Dimension::Surface)
   {
@@ -102,7 +102,7 @@ ElementShape shapeOf(const CellTopology& t, const Mesh& mesh, const Vec3* before
       }
     }
     const Matrix T = now * old.inverse();
-    // In the plane the third row and column are those of the identity.
+    // In the plane, the third row and column are taken from the identity.
     if (t.dimension == 3)
     {
       const double root = std::cbrt(std::abs(T.determinant()));
@@ -121,8 +121,8 @@ ElementShape shapeOf(const CellTopology& t, const Mesh& mesh, const Vec3* before
   return sum;
 }
 
-/// Calls visit(chunk, cell, shape) for each cell that is an element; the numbers are NaN where it
-/// is not valid.
+/// Calls visit(chunk, cell, shape) for each cell that is an element; the numbers are NaN if it is
+/// not valid.
 template <class Visit>
 void forEachElement(const Mesh& mesh, const double* points, int threads, const Visit& visit)
 {
@@ -150,7 +150,7 @@ void forEachElement(const Mesh& mesh, const double* points, int threads, const V
             before[k] = pointOf(view, node[k]);
             std::copy_n(points + 3 * node[k], 3, after[k].begin());
           }
-          // A cell of a surface is folded where it opposes the cells around.
+          // A cell of a surface is folded if its normal opposes the surrounding cells.
           Vec3 around = { 0, 0, 0 };
           for (int k = 0; surface && k < t.nodes; ++k)
           {
@@ -218,7 +218,7 @@ WarpQuality qualityOf(const Mesh& mesh, const double* points, int threads, const
     });
   WarpQuality quality;
   Index valid = 0;
-  // Summed in the order of the chunks.
+  // Sum in the order of the chunks.
   for (const Part& part : parts)
   {
     valid += part.valid;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file WarpQuality.h
- * @brief How much a deformation has changed the shapes of the elements.
+ * @brief Measures how a deformation has changed the shapes of the elements.
  */
 #ifndef tautline_WarpQuality_h
 #define tautline_WarpQuality_h
@@ -12,10 +12,10 @@
 namespace tautline
 {
 /**
- * @brief The TMP shape metric (4.22) of each element at new points against the mesh, the mean over
- * its corners; NaN where it is inverted or degenerate, or of a type that is not measured.
- * Of a surface in space T is measured in the planes of the cell before and after, and a cell that
- * is folded over those around counts as inverted.
+ * @brief The TMP shape metric (4.22) of each element at new points relative to the mesh, averaged
+ * over its corners; NaN if it is inverted, degenerate, or of an unsupported type. On a surface in
+ * space, T is measured in the planes of the cell before and after, and a cell that is folded over
+ * its neighbors is inverted.
  * @param mesh valid
  * @param points 3 per point of the mesh
  * @param threads 0: all cores. The result does not depend on it.
@@ -30,8 +30,8 @@ struct WarpQuality
   Index inverted = 0; ///< elements without a value: inverted, degenerate or not measured
   double worst = 0;   ///< largest value, 0 without any
   double mean = 0;    ///< over the elements that have one
-  /// Largest inverse mean ratio of T against the mesh, the mean over the corners of an element; at
-  /// least 1 where an element is valid, 0 without any.
+  /// The largest inverse mean ratio of T relative to the mesh, averaged over the corners of an
+  /// element; at least 1 if an element is valid, 0 without valid elements.
   double worstRatio = 0;
 };
 
@@ -44,7 +44,7 @@ TAUTLINE_SOLVERS_EXPORT WarpQuality qualityOf(
   const Mesh& mesh, const double* points, int threads = 0);
 
 class Ranks;
-/// The same of the whole mesh, of which a rank has a part. Internal.
+/// The same for the whole mesh, of which each rank has a part. Internal.
 WarpQuality qualityOf(const Mesh& local, const double* points, int threads, const Ranks& ranks);
 }
 #endif

@@ -12,28 +12,28 @@ namespace tautline
 {
 namespace
 {
-/// Radius of the functions where none is given, in extents of the prescribed points.
+/// The default radius of the functions, in extents of the prescribed points.
 constexpr double DefaultRadius = 2.0;
-/// Points are chosen among so many, spread evenly, and those of the others that are met worst.
+/// Points are chosen among this many evenly spread ones and the points with the largest residuals.
 constexpr std::size_t FirstCandidates = 4000;
 constexpr std::size_t MoreCandidates = 1000; ///< each time
-/// No more points than this are chosen: their matrix is dense.
+/// The maximum number of chosen points: their matrix is dense.
 constexpr std::size_t MaxCenters = 3000;
-/// A candidate that is within this (squared) of what the chosen ones span adds nothing but
-/// rounding.
+/// A candidate within this (squared) distance of the span of the chosen ones adds only rounding
+/// errors.
 constexpr double Independence = 1e-12;
 /// Residuals within this of each other, relatively, are equal up to rounding.
 constexpr double Tie = 1e-9;
-/// So many equal ones are chosen together: the images of a point by the symmetries of a cube.
+/// At most this many ties are chosen together: the images of a point by the symmetries of a cube.
 constexpr std::size_t MaxTied = 48;
 constexpr std::size_t RadialBasisLeafSize = 32;
-/// Number of products from which a choice uses several threads.
+/// The number of products from which a choice uses several threads.
 constexpr Index ParallelWork = 200000;
 constexpr Index ProductsPerChunk = 30000; ///< of such a choice
-/// Chosen points between two checks of the limits.
+/// The number of chosen points between two checks of the limits.
 constexpr std::size_t ClockInterval = 16;
 
-/// A residual over its tolerance, which may be 0; above 1 where it is too large.
+/// The ratio of a residual to its tolerance, which may be 0; above 1 if the residual is too large.
 double relativeTo(double tolerance, double residual)
 {
   return residual / std::max(tolerance, std::numeric_limits<double>::min());
@@ -47,7 +47,7 @@ double wendland(double ratio)
 }
 
 /**
- * @brief Chooses centres among candidates, always where the residual is largest.
+ * @brief Chooses centers among candidates, always at the largest residual.
  *
  * Row i of the basis holds, for candidate i, the values of Newton's basis of the functions chosen:
  * columns of a Cholesky factor that grows with the pivot. A choice costs one product with each row.
@@ -71,7 +71,7 @@ public:
     this->Rows.emplace_back();
   }
 
-  /// Brings the rows of the candidates added last up to the others.
+  /// Extends the rows of newly added candidates to the current length.
   void catchUp(std::size_t from)
   {
     const auto count = static_cast<Index>(this->Points.size());
@@ -86,7 +86,7 @@ public:
       });
   }
 
-  /// Chooses until all residuals are within their tolerances; false when the control stopped it.
+  /// Chooses until all residuals are within their tolerances; false if the control stopped it.
   bool choose(WarpControl& control)
   {
     for (std::vector<std::size_t> next = this->worst();
@@ -112,7 +112,7 @@ public:
   std::size_t chosen() const { return this->Chosen.size(); }
   const Vec3& center(std::size_t k) const { return this->Points[this->Chosen[k]]; }
 
-  /// The coefficients of the functions: the transposed factor, solved backwards.
+  /// The coefficients of the functions: back substitution with the transposed factor.
   std::vector<Vec3> coefficients() const
   {
     std::vector<Vec3> result = this->Weights;
@@ -129,8 +129,9 @@ public:
   }
 
 private:
-  /// The candidates with the largest residual over its tolerance: those that are equal to rounding,
-  /// as the images of a symmetry are, or the first of many; none if all are within it.
+  /// The candidates with the largest residual over its tolerance: all that tie up to rounding, such
+  /// as images under a symmetry, or the first if there are too many; none if all are within
+  /// tolerance.
   std::vector<std::size_t> worst() const
   {
     std::vector<double> sizes(this->Points.size(), 0.0);
@@ -156,7 +157,7 @@ private:
     return result;
   }
 
-  /// Takes a candidate as the next centre.
+  /// Adds a candidate as the next center.
   void take(std::size_t candidate)
   {
     const std::size_t k = this->Chosen.size();
@@ -180,7 +181,7 @@ private:
   }
 
 private:
-  /// The value of the basis function k at candidate i, and what it leaves there.
+  /// Computes the value of basis function k at candidate i, and updates the residual there.
   void append(std::size_t i, std::size_t k)
   {
     const std::size_t at = this->Chosen[k];
@@ -221,7 +222,7 @@ private:
   std::vector<Vec3> Weights; ///< of Newton's basis
 };
 
-/// The sum of the functions, evaluated by those within reach.
+/// The sum of the functions, evaluated over the centers within the radius.
 class Interpolant
 {
 public:
@@ -251,7 +252,7 @@ public:
       const bool beyond = distance - node.radius >= this->Radius;
       if (!beyond && !node.leaf && distance + node.radius > this->Radius)
       {
-        ++n; // some may be within reach
+        ++n; // some may be within the radius
         continue;
       }
       if (!beyond)
@@ -298,7 +299,7 @@ private:
   std::array<std::vector<double>, 3> Centers, Coefficients; ///< in the order of the tree
 };
 
-/// Keeps those with the largest errors, more than MoreCandidates where several are equally bad.
+/// Keeps the points with the largest errors; more than MoreCandidates in case of ties.
 void keepWorst(const std::vector<double>& errors, std::vector<std::size_t>& missed)
 {
   std::vector<double> sizes;
@@ -316,11 +317,11 @@ void keepWorst(const std::vector<double>& errors, std::vector<std::size_t>& miss
 }
 
 /**
- * @brief Chooses centres until every prescribed point is met. Candidates are first some points
- * spread evenly; then, in each round, those of the others that are met worst, in the order of
- * prescribed(). A residual is enough where the options' share of the height of the cells there
- * exceeds it.
- * @return false when the control stopped it
+ * @brief Chooses centers until every prescribed point is fitted. The first candidates are evenly
+ * spread; each further round adds the points with the largest residuals, in the order of
+ * prescribed(). A residual is small enough if it is below the fit tolerance times the height of the
+ * cells there.
+ * @return false if the control stopped it
  */
 bool fitGreedily(
   const PrescribedMotion& motion, double radius, WarpControl& control, GreedyFit& fit)
@@ -330,7 +331,8 @@ bool fitGreedily(
   std::vector<double> tolerances(all.size());
   for (std::size_t i = 0; i < all.size(); ++i)
   {
-    // Points outside all cells, which have no height, are met as the largest displacement is.
+    // Points outside all cells have no height: their tolerance is relative to the largest
+    // displacement.
     tolerances[i] =
       control.options().fitTolerance * std::min(motion.wall(i).height, motion.largest());
   }
@@ -407,7 +409,7 @@ std::vector<double> warpByRadialBasis(const PrescribedMotion& motion, WarpContro
   if (!(options.supportRadius >= 0 && std::isfinite(options.supportRadius)))
   {
     throw Error("the support radius is " + std::to_string(options.supportRadius) +
-      "; it must be positive, or 0 for one that is chosen");
+      "; it must be positive, or 0 for an automatic radius");
   }
   if (!(options.fitTolerance >= 0 && options.fitTolerance < 1))
   {

@@ -11,7 +11,7 @@ namespace
 {
 constexpr Index SheetComponents = 3;
 
-/// The cells of a surface side by side in one plane, each with points of its own.
+/// The cells of a surface unfolded into one plane, each with separate points.
 struct FlatCells
 {
   explicit FlatCells(const Mesh& surface)
@@ -44,7 +44,7 @@ struct FlatCells
   std::vector<unsigned char> types;
   std::vector<Index> offsets = { 0 }, connectivity;
   std::vector<Index> cells;                ///< of the surface
-  std::vector<Index> origin;               ///< per point: that of the surface
+  std::vector<Index> origin;               ///< per point: the corresponding point of the surface
   std::vector<std::array<Vec3, 3>> frames; ///< per cell: two directions in its plane, the normal
 
 private:
@@ -132,7 +132,7 @@ SparseMatrix sheetMatrix(
   matrix.offsets.assign(all.outerIndexPtr(), all.outerIndexPtr() + size + 1);
   matrix.columns.assign(all.innerIndexPtr(), all.innerIndexPtr() + all.nonZeros());
   matrix.values.assign(all.valuePtr(), all.valuePtr() + all.nonZeros());
-  symmetrize(matrix, options.threads); // of rounding
+  symmetrize(matrix, options.threads); // removes rounding errors
   return matrix;
 }
 }

@@ -12,10 +12,10 @@
 namespace tautline
 {
 /**
- * @brief The stiffness matrix of a surface in space with three displacements per point: in the
- * plane of each cell as plane strain, across it by the shear modulus times the Laplacian, which is
- * elasticity of displacements that do not change along the normal. Unknown 3 p + k is component k
- * of point p. Quadrilaterals count as their projections onto their mean planes.
+ * @brief The stiffness matrix of a surface in space with three displacements per point: plane
+ * strain in the plane of each cell, and the shear modulus times the Laplacian normal to it, which
+ * is elasticity for displacements that are constant along the normal. Unknown 3 p + k is component
+ * k of point p. Quadrilaterals are projected onto their mean planes.
  */
 TAUTLINE_SOLVERS_EXPORT SparseMatrix sheetMatrix(
   const Mesh& surface, const ElasticOperator& pde, const AssemblyOptions& options);

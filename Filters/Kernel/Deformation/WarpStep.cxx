@@ -12,11 +12,11 @@ namespace tautline
 {
 namespace
 {
-/// Inverse mean ratios against the initial mesh. A triangle stretched to 3.7 times its length at
-/// the same area has the first, to 20 times the second.
+/// Inverse mean ratios relative to the initial mesh. A triangle stretched to 3.7 times its length
+/// at constant area has the first value; to 20 times, the second.
 constexpr double GoodRatio = 2, PoorRatio = 10;
 
-/// A mesh on several ranks with other points, until the end of its life.
+/// Temporarily replaces the points of a distributed mesh; restores them on destruction.
 class PlacedMesh
 {
 public:
@@ -24,7 +24,7 @@ public:
     : Placed(mesh)
     , Before(mesh.points())
   {
-    // In place: views of the mesh go on to read the same memory.
+    // Copy in place, because views of the mesh refer to this memory.
     std::copy(points.begin(), points.end(), mesh.points().begin());
   }
   ~PlacedMesh()
@@ -51,7 +51,7 @@ WarpStep::WarpStep(const Mesh& from, const Mesh& initial, const WarpParts& parts
 WarpStep::~WarpStep() = default;
 
 //------------------------------------------------------------------------------
-/// Makes the scalar operator with the coefficients of this motion, unless it is there already.
+/// Builds the scalar operator with the coefficients of this motion unless it exists already.
 void WarpStep::updateFemwarp(const double* displacement, WarpControl& control)
 {
   const WarpOptions& options = control.options();
@@ -81,14 +81,14 @@ void WarpStep::updateFemwarp(const double* displacement, WarpControl& control)
           this->From, this->Parts, Femwarp::Operator::Harmonic, IdentityTensor, nullptr, control);
         this->Tensors = localGradients(
           this->From.view(), first.warp(displacement, control).data(), this->Parts.ranks());
-        this->Tensors.reserve(1); // not null on a rank without cells
+        this->Tensors.reserve(1); // avoid a null pointer on a rank without cells
         tensors = this->Tensors.data();
         this->Scalar.reset();
         break;
       }
     }
   }
-  // Coefficients that differ by rounding only give the same matrix.
+  // Reuse the matrix if the coefficients differ only by rounding.
   constexpr double rounding = 1e-12;
   bool same = this->Scalar != nullptr;
   for (std::size_t k = 0; k < tensor.size(); ++k)
@@ -107,7 +107,7 @@ void WarpStep::updateFemwarp(const double* displacement, WarpControl& control)
 }
 
 //------------------------------------------------------------------------------
-/// The displacements of all points by the method's own equations.
+/// The displacements of all points by the equations of the method.
 void WarpStep::warp(
   WarpMethod method, const double* displacement, WarpControl& control, std::vector<double>& moved)
 {
@@ -142,7 +142,7 @@ void WarpStep::warp(
   }
   if (this->Parts.ranks().any(moved.empty() && !prescribed.empty()))
   {
-    // Stopped before there was a result: only the prescribed points have moved.
+    // Stopped before a result was available: only the prescribed points have moved.
     control.proceed(1.0);
     moved.assign(3 * prescribed.size(), 0.0);
   }
@@ -163,8 +163,8 @@ void WarpStep::warp(
 }
 
 //------------------------------------------------------------------------------
-/// By a method that takes each point by itself: on several ranks with the prescribed points of all
-/// of them, in the order of their ids, and the own free ones, without cells.
+/// Warps with a pointwise method: on several ranks, with the prescribed points of all ranks in the
+/// order of their ids and the owned free points, without cells.
 std::vector<double> WarpStep::warpPointwise(
   PointwiseMethod method, const double* displacement, WarpControl& control) const
 {
@@ -252,7 +252,7 @@ WarpQuality WarpStep::record(const char* stage, double amount, int iterations, c
 }
 
 //------------------------------------------------------------------------------
-/// The points by a method's own equations, and a record of them.
+/// Computes the points by the equations of a method and records them.
 WarpQuality WarpStep::warpBy(WarpMethod method, const char* stage, const double* displacement,
   double amount, WarpControl& control, std::vector<double>& points)
 {
@@ -267,7 +267,8 @@ WarpQuality WarpStep::warpBy(WarpMethod method, const char* stage, const double*
 }
 
 //------------------------------------------------------------------------------
-/// Automatic: the explicit methods in turn until one leaves good elements, or the better one.
+/// Automatic: tries the explicit methods in turn until one gives good elements; otherwise takes the
+/// best result.
 WarpQuality WarpStep::warpByBest(
   const double* displacement, double amount, WarpControl& control, std::vector<double>& points)
 {
@@ -348,7 +349,7 @@ void WarpStep::improve(
   const auto stage = [&](const char* name, int iterations) {
     result.invertedAfter = this->record(name, amount, iterations, points.data(), control).inverted;
   };
-  // A surface has no model here that its points could slide on.
+  // Surfaces have no model for sliding points here.
   const bool surface = this->Parts.dimension() == Dimension::Surface;
   const bool literal = options.method == WarpMethod::Hybrid && !options.untangleFirst && !surface;
   if (literal && !this->Following)
@@ -371,23 +372,24 @@ void WarpStep::improve(
       fixed[i] = fixed[i] || std::equal(&points[at], &points[at] + 3, &before[at]); // not untangled
     }
   }
-  // In a step of many the next step needs a good mesh; else the target is the shape of the initial
-  // mesh. Untangling knows ideal elements alone, which thin layers have none of.
+  // Within a sequence of steps, the next step needs a good mesh; otherwise the target is the shape
+  // of the initial mesh. Untangling only uses ideal elements as targets, which do not suit thin
+  // layers.
   const bool optimizes = this->Following || !restoresAll
     ? result.invertedAfter == 0 && (this->Following || tangled)
     : !literal && result.invertedAfter < cells;
   if (optimizes && !surface && !control.stopped())
   {
-    // The shape (4.22) grows with the fourth power of T. From elements that are barely valid its
-    // descent ends early: for a box that rotates by 120 degrees in a box with a worst value of 870
-    // instead of 41. The barrier improves these elements first.
+    // The shape (4.22) grows with the fourth power of T. Its descent stalls at barely valid
+    // elements: for a box rotating by 120 degrees in a box, at a worst value of 870 instead of 41.
+    // The barrier improves these elements first.
     int iterations = 0;
     if (result.invertedAfter == 0 && (this->Following || poor))
     {
       const std::vector<double> before = points;
       iterations = this->optimize(Aim::Barrier, fixed, control, points);
-      // The mean may grow relative to where the optimization starts, so that it starts again.
-      // Several ranks improve no single elements.
+      // The mean may grow relative to the start of the optimization, so a new optimization is
+      // started. On several ranks, the worst elements are not improved individually.
       const bool worst = !this->Following && !ranks.several() && !control.stopped() &&
         qualityOf(this->Initial, points.data(), options.threads).worstRatio > PoorRatio;
       if (worst)
@@ -414,14 +416,14 @@ void WarpStep::improve(
 }
 
 //------------------------------------------------------------------------------
-/// The initial mesh with other points, which stay alive.
+/// The initial mesh with other points, which must outlive it.
 Mesh WarpStep::moved(const std::vector<double>& points, int threads) const
 {
   MeshView view = this->Initial.view();
   view.points = points.data();
   Mesh mesh(view, threads);
   mesh.setMirrored(this->Initial.mirrored());
-  mesh.setSpace(this->Initial.space()); // a surface may pass through a plane
+  mesh.setSpace(this->Initial.space()); // a surface may become planar
   return mesh;
 }
 
@@ -441,8 +443,8 @@ int WarpStep::untangle(
     tautline::untangle(this->moved(points, control.options().threads), options, ranks);
   if (done.exceededMemory)
   {
-    control.addMessage("The whole mesh did not fit into the memory of the first process, where the "
-                       "elements that are left would have been untangled.");
+    control.addMessage("The whole mesh did not fit into the memory of the first process, so "
+                       "the remaining elements were not untangled there.");
   }
   if (done.reason == StopReason::TimeLimit)
   {
@@ -455,7 +457,7 @@ int WarpStep::untangle(
 }
 
 //------------------------------------------------------------------------------
-/// Of the elements of the whole initial mesh.
+/// The mean element size of the whole initial mesh.
 double WarpStep::meanSize() const
 {
   const Ranks& ranks = this->Parts.ranks();
@@ -514,8 +516,8 @@ int WarpStep::optimize(Aim aim, const std::vector<unsigned char>& fixed, WarpCon
   optimization.threads = options.threads;
   optimization.scalarization.method = Scalarization::ExponentialSum;
   optimization.objectives.assign(2, Objective());
-  // (4.24): the exponential sum of the shape and of a second metric. No element may get worse by
-  // the first of them.
+  // (4.24): the exponential sum of the shape and of a second metric. No element may get worse in
+  // the first metric.
   const bool holds = aim == Aim::HeldShape;
   Objective &shape = optimization.objectives[holds ? 1 : 0],
             &other = optimization.objectives[holds ? 0 : 1];

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file WarpStep.h
- * @brief One step of a motion: from a mesh and the displacements of its prescribed points to the
- * points of all.
- * Internal: not installed.
+ * @brief One step of a motion: computes all points of a mesh from the displacements of the
+ * prescribed points. Internal: not installed.
  */
 #ifndef tautline_WarpStep_h
 #define tautline_WarpStep_h
@@ -19,22 +18,22 @@ class PrescribedMotion;
 /**
  * @class tautline::WarpStep
  * @brief Deforms a mesh by one step of a motion with the method of the options; keeps matrices for
- * the next one from the same mesh.
+ * the next step from the same mesh.
  */
 class WarpStep
 {
 public:
   /**
-   * @param from where the step begins; the first step's is `initial`
+   * @param from the mesh at the start of the step; `initial` for the first step
    * @param initial the reference of the shapes of elements
    */
   WarpStep(const Mesh& from, const Mesh& initial, const WarpParts& parts);
   ~WarpStep();
 
   /**
-   * @brief Makes this one of many steps of an untangling method: isotropic FEMWARP, local
-   * untangling, a little smoothing by shape against `initial`. improve() follows after the last
-   * one.
+   * @brief Makes this an intermediate step of an untangling method: isotropic FEMWARP, local
+   * untangling, and a few shape-smoothing sweeps relative to `initial`. improve() follows after the
+   * last step.
    */
   void setFollowing(bool following) { this->Following = following; }
 
@@ -42,12 +41,12 @@ public:
    * @brief Writes the new points, and a record of each stage into the result.
    * @param displacement from `from`
    * @param amount of the whole motion, for the records
-   * @return inverted or degenerate elements
+   * @return the number of inverted or degenerate elements
    */
   Index run(
     const double* displacement, double amount, WarpControl& control, std::vector<double>& points);
 
-  /// The second step of the methods that have one; the prescribed points are in place already.
+  /// The second step of two-step methods; the prescribed points are already in place.
   void improve(
     const double* displacement, double amount, WarpControl& control, std::vector<double>& points);
 
@@ -70,7 +69,7 @@ private:
     Barrier,  ///< the squared inverse mean ratios of T alone
     Worst,    ///< then the worst of them, while the mean hardly grows
     Shape,    ///< the exponential sum, see WarpOptions::untangleFirst
-    HeldShape ///< the same while no inverse mean ratio exceeds the worst at the start
+    HeldShape ///< the same, with no inverse mean ratio above the worst at the start
   };
   int optimize(Aim aim, const std::vector<unsigned char>& fixed, WarpControl& control,
     std::vector<double>& points) const;
@@ -83,7 +82,7 @@ private:
   const WarpParts& Parts;
   std::unique_ptr<Femwarp> Scalar; ///< with the coefficients Tensor
   SymmetricTensor Tensor = IdentityTensor;
-  std::vector<double> Tensors; ///< of LocalGradients
+  std::vector<double> Tensors; ///< for LocalGradients
   std::unique_ptr<ElasticWarp> Elastic;
   bool Following = false;
 };

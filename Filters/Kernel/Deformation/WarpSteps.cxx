@@ -7,11 +7,11 @@ namespace tautline
 {
 namespace
 {
-/// Elements with a larger inverse mean ratio against the mesh at rest have collapsed: the next step
-/// would start from a mesh that is valid in name only.
+/// Elements with a larger inverse mean ratio relative to the mesh at rest have collapsed: the next
+/// step would start from a practically invalid mesh.
 constexpr double Collapsed = 1e3;
 
-/// A mesh whose points are those of a step's beginning.
+/// A mesh with the points at the start of a step.
 class MovedMesh
 {
 public:
@@ -22,7 +22,7 @@ public:
     this->View.points = this->Points.data();
     this->Moved = std::make_unique<Mesh>(this->View, threads);
     this->Moved->setMirrored(initial.mirrored());
-    this->Moved->setSpace(initial.space()); // a surface may pass through a plane
+    this->Moved->setSpace(initial.space()); // a surface may become planar
   }
   const Mesh& mesh() const { return *this->Moved; }
 
@@ -52,14 +52,14 @@ void warpInSteps(const Mesh& mesh, const WarpParts& parts, const WarpMotion& mot
   int done = 0;
   while (amount < 1.0)
   {
-    // The last step ends at 1, not a rounding before it.
+    // The last step ends exactly at 1.
     const bool last = automatic ? amount + step >= 1.0 : done + 1 == steps;
     const double next = last ? 1.0 : amount + step;
     if (!control.proceed(amount))
     {
       break;
     }
-    // The displacement of this step starts at the points reached, so that no error accumulates.
+    // The displacement of this step starts at the current points, so that errors do not accumulate.
     std::vector<double> displacement(size, 0.0), to;
     motion(next, displacement.data());
     for (std::size_t i = 0; i < size; ++i)
@@ -100,7 +100,7 @@ void warpInSteps(const Mesh& mesh, const WarpParts& parts, const WarpMotion& mot
     }
     if (automatic && done >= options.maximumSteps && amount < 1.0)
     {
-      control.addMessage("The limit of steps was reached.");
+      control.addMessage("The limit on the number of steps was reached.");
       break;
     }
   }

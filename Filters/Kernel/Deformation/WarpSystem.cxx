@@ -11,12 +11,13 @@ namespace tautline
 {
 namespace
 {
-/// Former solutions kept; each costs two vectors.
+/// The number of previous solutions kept; each costs two vectors.
 constexpr std::size_t maxFormer = 12;
-/// Numbers of unknowns up to which a factorization is faster (measured): its first solve takes at
-/// most a few tenths of a second longer than multigrid, and each further one a tenth of the time.
+/// The number of unknowns up to which a factorization is faster (measured): its first solve takes
+/// at most a few tenths of a second longer than multigrid, and each further one a tenth of the
+/// time.
 constexpr Index directPlanar = 600000, directVolume = 20000;
-/// Where CG fails, a factorization is tried that is this much larger at most.
+/// If CG fails, a factorization up to this many times larger is tried.
 constexpr Index largestFactor = 10;
 
 /// Bitwise the same for any number of threads.
@@ -90,7 +91,7 @@ WarpSystem::WarpSystem(const WarpMatrix& given, int block, const std::vector<uns
   {
     for (Index row = p * block; row < (p + 1) * block; ++row)
     {
-      // Another rank has the row of a point that it owns.
+      // The row of a point is on the rank that owns it.
       const Index end = this->Shared || ranks.owns(p) ? all.offsets[row + 1] : all.offsets[row];
       for (Index e = all.offsets[row]; e < end; ++e)
       {
@@ -118,7 +119,7 @@ WarpSystem::WarpSystem(const WarpMatrix& given, int block, const std::vector<uns
     {
       ids.push_back(ranks.mesh().numbers()[p]);
     }
-    ids.reserve(1); // not null, which is for one rank
+    ids.reserve(1); // avoid a null pointer, which means one rank
     this->Numbering = std::make_unique<PointNumbering>(
       ranks.communicator(), static_cast<Index>(this->Free.size()), ids.data());
     this->Unknowns = this->Numbering->globalSize() * block;
@@ -163,14 +164,15 @@ void WarpSystem::makeSolver(KrylovMethod method, WarpControl& control)
 }
 
 //------------------------------------------------------------------------------
-/// Over the unknowns of all ranks; one of the vectors is 0 at those of other ranks.
+/// Over the unknowns of all ranks; one of the vectors is 0 at unknowns of other ranks.
 double WarpSystem::product(const std::vector<double>& a, const std::vector<double>& b) const
 {
   return this->TheRanks.sum(tautline::product(a, b, this->Options.threads));
 }
 
 //------------------------------------------------------------------------------
-/// Of a product with a shared matrix: the sum of what the ranks have, and 0 at unknowns of others.
+/// For a product with a shared matrix: sums the contributions of all ranks, and sets unknowns of
+/// other ranks to 0.
 void WarpSystem::addShares(std::vector<double>& vector) const
 {
   if (!this->Shared)
@@ -209,11 +211,12 @@ std::vector<double> WarpSystem::rightHandSide(const std::vector<double>& values)
   return right;
 }
 
-/// Moves what former right-hand sides span over to the solution; returns the norm of what is left.
+/// Moves the part of the right-hand side in the span of previous ones to the solution; returns the
+/// norm of the remainder.
 double WarpSystem::project(std::vector<double>& right, std::vector<double>& solution) const
 {
   const int threads = this->Options.threads;
-  constexpr int rounds = 2; // the second makes up for the rounding of the first
+  constexpr int rounds = 2; // the second corrects the rounding of the first
   for (int round = 0; round < rounds; ++round)
   {
     for (const Former& former : this->Basis)
@@ -313,7 +316,7 @@ bool WarpSystem::solve(std::vector<double>& values, WarpControl& control)
     const double tolerance = this->Options.tolerance;
     if (rest > tolerance * whole)
     {
-      // Where little is left to solve for, it need not be as exact.
+      // If the remainder is small, its relative accuracy can be lower.
       constexpr double loosest = 1e-2;
       std::vector<double> y;
       good = this->runSolver(right, std::min(loosest, tolerance * whole / rest), y, control);
@@ -347,8 +350,8 @@ bool WarpSystem::solve(std::vector<double>& values, WarpControl& control)
 ComponentSolution solveComponents(const std::vector<WarpSystem*>& systems, const WarpParts& parts,
   const std::vector<double>& rest, double nothing, WarpControl& control, std::vector<double>& moved)
 {
-  // The maximum principle bounds the motion by the prescribed one; discrete operators may exceed it
-  // a little.
+  // The maximum principle bounds the motion by the prescribed one; discrete operators may exceed
+  // the bound slightly.
   constexpr double excess = 2.0;
   const std::size_t n = rest.size() / 3;
   ComponentSolution outcome;

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file WarpSystem.h
- * @brief The partition (4.8) of a matrix by points whose values are given and points whose values
- * are unknown, and solutions of (4.10) for many given values.
- * Internal: not installed.
+ * @brief The partition (4.8) of a matrix into points with given and with unknown values, and
+ * solutions of (4.10) for many right-hand sides. Internal: not installed.
  */
 #ifndef tautline_WarpSystem_h
 #define tautline_WarpSystem_h
@@ -23,35 +22,35 @@ class WarpParts;
 /// The matrix of all points.
 struct WarpMatrix
 {
-  WarpMatrix(const SparseMatrix& given) // NOLINT(google-explicit-constructor): a matrix as it is
+  WarpMatrix(const SparseMatrix& given) // NOLINT(google-explicit-constructor): implicit by design
     : matrix(given)
   {
   }
   const SparseMatrix& matrix;
-  bool symmetric = true; ///< and positive semidefinite; else diagonally dominant
-  /// On several ranks: the matrix is the sum of those of all of them. Else the rows of own points
-  /// count, which are whole.
+  bool symmetric = true; ///< and positive semidefinite; otherwise diagonally dominant
+  /// On several ranks: whether the matrix is the sum of the rank matrices. If not, the rows of
+  /// owned points are used, which must be complete.
   bool shared = false;
 };
 
 /**
  * @class tautline::WarpSystem
- * @brief Keeps the matrix, its preconditioner or factorization, and former solutions.
+ * @brief Keeps the matrix, its preconditioner or factorization, and previous solutions.
  *
- * A new solve starts from the projection of its right-hand side on the former ones (P. F. Fischer,
- * "Projection techniques for iterative solution of Ax = b with successive right-hand sides", CMAME
- * 163, 1998), and ends there where nothing is left: a boundary that turns, shifts or stretches as a
- * whole needs no solve once it has done so.
+ * A new solve starts from the projection of its right-hand side onto the previous ones (P. F.
+ * Fischer, "Projection techniques for iterative solution of Ax = b with successive right-hand
+ * sides", CMAME 163, 1998), and ends there if there is no remainder: a boundary that repeatedly
+ * rotates, shifts or stretches as a whole needs only the first solves.
  */
 class WarpSystem
 {
 public:
   /**
    * @param ranks that solve together; values are given and found at all local points
-   * @param all the matrix of all points, read here only. Where it is not symmetric the automatic
-   * solver is taken.
+   * @param all the matrix of all points, read by the constructor only. If it is not symmetric, the
+   * automatic solver is used.
    * @param block unknowns per point
-   * @param held one flag per point: its values are given
+   * @param held one flag per point: nonzero if its values are given
    * @param points 3 coordinates per point
    * @param dimension of the mesh, for the choice of the solver
    */
@@ -59,8 +58,8 @@ public:
     const double* points, int dimension, const WarpOptions& options, const Ranks& ranks);
 
   /**
-   * @brief Finds the values of the points that are not held from those that are; `values` has block
-   * x numberOfPoints. Adds times and iterations to the control's result.
+   * @brief Computes the values of free points from the values of held points; `values` has block x
+   * numberOfPoints. Adds times and iterations to the control's result.
    * @return false if the solver failed: `values` are its last iterate, and failure() has the reason
    */
   bool solve(std::vector<double>& values, WarpControl& control);
@@ -82,7 +81,7 @@ private:
     WarpControl& control);
   void makeSolver(KrylovMethod method, WarpControl& control);
 
-  /// What a set-up that was given up may still read.
+  /// Data that an abandoned setup may still read.
   struct InnerSystem
   {
     SparseMatrix matrix;             ///< A_I
@@ -109,7 +108,7 @@ private:
   std::string Failure;
 };
 
-/// What became of solveComponents().
+/// The outcome of solveComponents().
 struct ComponentSolution
 {
   bool converged = true;
@@ -120,10 +119,10 @@ struct ComponentSolution
 /**
  * @brief Solves for the components of a motion, one after the other, and adds them to it at the
  * points that are not held. The ranks of the parts solve together.
- * @param systems each takes what the one before has found; null ones are left out
- * @param rest 3 per point: what the prescribed points move by, 0 elsewhere
- * @param nothing components that are nowhere larger are 0
- * @param moved 3 per point; where the control stops, not all components are added
+ * @param systems each uses the result of the previous one; null systems are skipped
+ * @param rest 3 per point: the displacements of the prescribed points, 0 elsewhere
+ * @param nothing components that nowhere exceed this are treated as 0
+ * @param moved 3 per point; if the control stops, not all components are added
  */
 ComponentSolution solveComponents(const std::vector<WarpSystem*>& systems, const WarpParts& parts,
   const std::vector<double>& rest, double nothing, WarpControl& control,

@@ -11,8 +11,9 @@ namespace tautline
 {
 namespace
 {
-/// Share of the identity in what a rotation is fitted to, so that edges that leave it open, as on a
-/// straight line, turn as little as possible; far above rounding, far below any edge.
+/// The weight of the identity in the rotation fit, so that edges that do not determine the
+/// rotation, as on a straight line, turn as little as possible; far above rounding and far below
+/// any edge.
 constexpr double LeastTurn = 1e-9;
 
 /// Sums over the edges and faces at a prescribed point.
@@ -44,7 +45,7 @@ double smallestHeight(const CellTopology& t, const Vec3* p)
   return smallest;
 }
 
-/// Adds a direction before and after the motion, both of length 1; none where one vanishes.
+/// Adds a direction before and after the motion, both of length 1; does nothing if one vanishes.
 void addDirection(const Vec3& before, const Vec3& after, Eigen::Matrix3d& sum)
 {
   const double lengths = norm(before) * norm(after);
@@ -72,7 +73,7 @@ std::array<Vec3, 3> rotationOf(Eigen::Matrix3d sum)
   return columns;
 }
 
-/// Walls of the cells of a mesh, cell by cell.
+/// Computes the walls of a mesh, cell by cell.
 class WallMaker
 {
 public:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file WarpWalls.h
- * @brief How thin the cells at prescribed points are, and how the wall turns there.
+ * @brief The height of the cells at prescribed points, and the rotation of the wall there.
  * Internal: not installed.
  */
 #ifndef tautline_WarpWalls_h
@@ -15,22 +15,23 @@
 
 namespace tautline
 {
-/// What the cells around a prescribed point state about the wall there.
+/// The properties of the wall at a prescribed point, computed from the surrounding cells.
 struct WallPoint
 {
-  /// Smallest height of a cell at the point: of a corner, above the largest of its sides.
+  /// The smallest height of a cell at the point: the height of a corner above its largest side.
   double height = std::numeric_limits<double>::infinity();
   /// Its share of the wall: of the faces (in the plane, the edges) between prescribed points.
   double area = 0;
-  /// Columns of the rotation that fits the edges and normals of these faces best.
+  /// The columns of the rotation that best fits the edges and normals of these faces.
   std::array<Vec3, 3> turn = { Vec3{ 1, 0, 0 }, Vec3{ 0, 1, 0 }, Vec3{ 0, 0, 1 } };
 };
 
 /**
- * @brief One item per point of the mesh; those of points that are not prescribed are empty.
+ * @brief One item per point of the mesh; empty for points that are not prescribed.
  *
- * A point without a face of prescribed points has the share that faces as long as the edges around
- * would give it, and the rotation of its edges to prescribed points; without one it does not turn.
+ * A point without a face of prescribed points has a share estimated from the lengths of the
+ * surrounding edges, and the rotation of its edges to prescribed points; without such an edge, it
+ * does not turn.
  * @param displacement 3 per point, read where the flag is set
  */
 TAUTLINE_SOLVERS_EXPORT std::vector<WallPoint> wallPoints(

@@ -16,7 +16,7 @@ namespace tautline
 {
 namespace
 {
-/// @param why what the solver says, or ""
+/// @param why the message of the solver, or ""
 [[noreturn]] void throwUnsolved(double tolerance, const std::string& why)
 {
   std::ostringstream text;
@@ -28,16 +28,16 @@ namespace
 using Matrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
 constexpr int NewtonSteps = 50;
-/// Newton's method is done at this (squared) decrement, which no affine map of the neighbours
-/// changes, and was successful at the second.
+/// Newton's method stops at this (squared) decrement, which is invariant under affine maps of the
+/// neighbors, and has succeeded if it reaches the second.
 constexpr double Enough = 1e-27, Acceptable = 1e-20;
-/// Of the incomplete factorization.
+/// The drop tolerance of the incomplete factorization.
 constexpr double DropTolerance = 1e-3;
 constexpr int FillFactor = 6;
 /// Iterations of the linear solver between two checks of the limits, and the number of restarts.
 constexpr int RunLength = 300, MaxRuns = 20;
 
-/// Neighbours of a point and its convex combination of them.
+/// The neighbors of a point and its convex combination of them.
 struct WeightedNeighbors
 {
   std::vector<Index> neighbors;
@@ -78,8 +78,8 @@ Vec3 solved(std::array<Vec3, 3> a, Vec3 b, int dimension)
  * @brief The weights w > 0 with sum 1 and w . offsets = 0 that have the largest product.
  *
  * They are 1 / (n + l . offset): l, which has as many components as space, minimizes -sum log(n + l
- * . offset). Where the point is not inside the convex hull of its neighbours there is no minimum:
- * all weights are the same then.
+ * . offset). If the point is not inside the convex hull of its neighbors, there is no minimum, and
+ * all weights are equal.
  */
 void maximizeProduct(const std::vector<Vec3>& offsets, int dimension, std::vector<double>& weights)
 {
@@ -121,8 +121,8 @@ void maximizeProduct(const std::vector<Vec3>& offsets, int dimension, std::vecto
     {
       break;
     }
-    // Halved until it reduces the function; near the minimum rounding dominates: a full step is
-    // right.
+    // The step is halved until it reduces the function; near the minimum, where rounding dominates,
+    // a full step is used.
     constexpr double Bottom = 1e-12, Shortest = 1e-10;
     double length = 1;
     double next = functionAt(l + direction);
@@ -152,11 +152,11 @@ void maximizeProduct(const std::vector<Vec3>& offsets, int dimension, std::vecto
   }
 }
 
-/// Neighbours and weights at the points of a mesh.
+/// The neighbors and weights at the points of a mesh.
 class Combinations
 {
 public:
-  /// Neighbours are in the order of their ids, so that the weights do not depend on the ranks.
+  /// Neighbors are in the order of their ids, so that the weights do not depend on the ranks.
   explicit Combinations(const Mesh& mesh, const Ranks& ranks = {})
     : Input(mesh)
     , TheRanks(ranks)
@@ -168,7 +168,7 @@ public:
   {
     const MeshView& view = this->Input.view();
     WeightedNeighbors result;
-    Vec3 normal = { 0, 0, 0 }; // of the cells around, if they are flat
+    Vec3 normal = { 0, 0, 0 }; // of the surrounding cells if they are flat
     for (Index c = this->Around.offsets[id]; c < this->Around.offsets[id + 1]; ++c)
     {
       const Index cell = this->Around.cells[c];
@@ -245,8 +245,8 @@ private:
 };
 
 /**
- * @brief Solves the system, column by column, by stabilised biconjugate gradients; the matrix is
- * diagonally dominant and an incomplete factorization exists. Solutions are verified.
+ * @brief Solves the system, column by column, by the stabilized biconjugate gradient method; the
+ * matrix is diagonally dominant and an incomplete factorization exists. Solutions are verified.
  * @return false when the control stopped it
  */
 bool solve(const Matrix& matrix, const Eigen::MatrixXd& right, double tolerance,
@@ -261,7 +261,7 @@ bool solve(const Matrix& matrix, const Eigen::MatrixXd& right, double tolerance,
   solution.setZero(right.rows(), right.cols());
   for (Eigen::Index k = 0; k < right.cols(); ++k)
   {
-    // Eigen 5 ends at an absolute tolerance, too: the right side is scaled to length 1.
+    // Eigen 5 also stops at an absolute tolerance: scale the right-hand side to length 1.
     const double length = right.col(k).norm();
     if (!(length > 0.0))
     {
@@ -283,7 +283,7 @@ bool solve(const Matrix& matrix, const Eigen::MatrixXd& right, double tolerance,
       const Eigen::VectorXd start = x;
       restartAlike();
       x = solver.solveWithGuess(b, start);
-      // The method updates its residual step by step; another run begins with the real one.
+      // The method updates its residual step by step; another run starts from the true residual.
     } while (
       solver.info() != Eigen::Success || !((b - matrix * x).norm() <= ResidualFactor * tolerance));
     solution.col(k) = length * x;
@@ -291,11 +291,11 @@ bool solve(const Matrix& matrix, const Eigen::MatrixXd& right, double tolerance,
   return true;
 }
 
-/// The numbers of the unknown points: those that are free, in a part with a prescribed point.
+/// The numbers of the unknown points: free points in a part with a prescribed point.
 struct Unknowns
 {
   std::vector<Index> points;
-  std::vector<int> numberOf; ///< per point of the mesh, -1 where it is no unknown
+  std::vector<int> numberOf; ///< per point of the mesh, -1 if it is not an unknown
 
   Unknowns(const Mesh& mesh, const PrescribedMotion& motion)
     : numberOf(static_cast<std::size_t>(mesh.view().numberOfPoints), -1)
@@ -330,8 +330,7 @@ struct Unknowns
   }
 };
 
-/// Axes along and across the plane of a planar mesh: none of the solver's error then leads out of
-/// the plane.
+/// Axes along and across the plane of a planar mesh: the solver error then stays within the plane.
 std::array<Vec3, 3> axesOf(const Mesh& mesh)
 {
   return mesh.dimension() == Dimension::Planar
@@ -377,8 +376,8 @@ Matrix assemble(const PrescribedMotion& motion, const Unknowns& unknowns,
   return matrix;
 }
 
-/// The affine motion at the local points, 3 each, of the prescribed points of all ranks.
-/// @return whether it is all there is, to rounding
+/// The affine motion, fitted to the prescribed points of all ranks, at the local points, 3 each.
+/// @return whether the motion is affine, up to rounding
 bool affineOfAll(const std::vector<PrescribedPoint>& given, const MeshView& local, int threads,
   std::vector<double>& motion)
 {
@@ -404,7 +403,8 @@ bool affineOfAll(const std::vector<PrescribedPoint>& given, const MeshView& loca
   return all.affine();
 }
 
-/// Each own unknown minus its combination of neighbours, of all local points; other rows are empty.
+/// Each owned unknown minus its combination of neighbors, over all local points; other rows are
+/// empty.
 /// @return false if the control stopped it
 bool assembleOwn(
   const Mesh& mesh, const WarpParts& parts, WarpControl& control, SparseMatrix& matrix)
@@ -491,7 +491,7 @@ std::vector<double> warpByWeightedLaplacian(const Mesh& mesh,
       }
     }
   }
-  // Parts without a prescribed point stay where they are.
+  // Parts without a prescribed point do not move.
   std::vector<double> result = motion.displacements(rest);
   for (const Index id : motion.free())
   {
@@ -549,7 +549,7 @@ std::vector<double> warpByWeightedLaplacian(
   {
     rest[i] = prescribed[i / 3] ? displacement[i] - moved[i] : 0.0;
   }
-  // A plane is at right angles to an axis: no error leads out of it.
+  // The plane is perpendicular to an axis, so errors stay within the plane.
   const ComponentSolution outcome =
     solveComponents({ system.get() }, parts, rest, 0.0, control, moved);
   if (control.stopped())

@@ -10,7 +10,7 @@ namespace tautline
 {
 namespace
 {
-// One list: registry, menu, documentation and tests take it from here.
+// The single list used by the registry, the menu, the documentation and the tests.
 const std::vector<DomainInfo> Domains = {
   { "wrench", "Wrench", "Figure 2.2 (a), Table 2.4", DomainKind::Planar, 19796, false, 8.8 },
   { "hinge", "Hinge", "Figure 2.2 (b), Table 2.4", DomainKind::Planar, 18359, false, 21.0 },
@@ -30,8 +30,8 @@ const std::vector<DomainInfo> Domains = {
   { "gate", "Moving Gate", "Figure 4.30", DomainKind::Planar, 3000, true, 2.0 },
   { "bending-bar", "Bending Bar", "Figure 4.35", DomainKind::Planar, 3000, true, 1.0 },
   { "sphere", "Sphere in a Cube", "Figure 4.37", DomainKind::Solid, 20000, true, 1.0 },
-  { "box-in-box", "Box in a Box", "not of the dissertation; the inner box turns", DomainKind::Solid,
-    12000, true, 0.97 },
+  { "box-in-box", "Box in a Box", "not in the dissertation; the inner box rotates",
+    DomainKind::Solid, 12000, true, 0.97 },
 };
 
 /// A bar of length L clamped at its left end, bent to an arc of angle phi.
@@ -66,7 +66,7 @@ const DomainInfo& findDomain(const std::string& name)
     {
       names += std::string(names.empty() ? "" : ", ") + domain.name;
     }
-    throw Error("there is no domain '" + name + "'; there are " + names);
+    throw Error("unknown domain '" + name + "'; available domains: " + names);
   }
   return *found;
 }
@@ -74,7 +74,8 @@ const DomainInfo& findDomain(const std::string& name)
 //------------------------------------------------------------------------------
 void checkDomainSize(double cells, DomainKind kind)
 {
-  // Estimates of the peak, with the copies for VTK; a mesher's triangulation is larger than a mesh.
+  // Estimates of the peak, with the copies for VTK; the triangulation of a mesher is larger than a
+  // mesh.
   constexpr double StructuredBytes = 200.0, MesherBytes = 600.0;
   const double needed = cells * (kind == DomainKind::Structured ? StructuredBytes : MesherBytes);
   char what[64];

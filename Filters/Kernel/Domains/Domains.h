@@ -4,10 +4,10 @@
  * @brief The geometric domains of the dissertation: boundaries for a mesher, structured meshes,
  * motions.
  *
- * The figures show the shapes without dimensions; lengths here are chosen after them. A boundary is
- * sampled with a given spacing, so that a mesh of any size has a boundary of its own resolution.
- * Every segment or facet has a marker (1 is the outer boundary), every moving domain defines where
- * the points of its boundary go.
+ * The figures show the shapes without dimensions; lengths here are chosen to match them. A boundary
+ * is sampled with a given spacing, so that its resolution matches the mesh size. Every segment or
+ * facet has a marker (1 is the outer boundary); every moving domain defines the motion of its
+ * boundary points.
  */
 #ifndef tautline_Domains_h
 #define tautline_Domains_h
@@ -47,8 +47,8 @@ struct SolidBoundary
 struct StructuredMesh
 {
   std::vector<double> points;      ///< x y z each
-  std::vector<Index> triangles;    ///< three points each, counter-clockwise
-  std::vector<int> pointMarkers;   ///< 0 inside, else the boundary a point lies on
+  std::vector<Index> triangles;    ///< three points each, counterclockwise
+  std::vector<int> pointMarkers;   ///< 0 inside, otherwise the boundary that contains the point
   std::vector<int> cellReferences; ///< 1 in the domain, 2 in its interaction layer
 };
 
@@ -65,7 +65,7 @@ struct DomainInfo
 {
   const char* name;   ///< as in Python and on the command line
   const char* label;  ///< as in a menu
-  const char* source; ///< where it is in the dissertation, or a remark
+  const char* source; ///< its location in the dissertation, or a remark
   DomainKind kind;
   Index cells; ///< default number of cells
   bool moving; ///< has a deformed boundary
@@ -74,17 +74,17 @@ struct DomainInfo
 
 /// All domains, in the order of the menu.
 TAUTLINE_KERNEL_EXPORT const std::vector<DomainInfo>& domains();
-/// Throws Error, with the names there are, for an unknown one.
+/// Throws Error, listing the available names, for an unknown name.
 TAUTLINE_KERNEL_EXPORT const DomainInfo& findDomain(const std::string& name);
 
 /**
- * @brief Throws Error if a mesh of so many cells needs more memory than is available. Estimated
- * from the number alone, before anything is allocated.
+ * @brief Throws Error if a mesh of this many cells needs more memory than is available. Estimated
+ * from the number of cells before any allocation.
  */
 TAUTLINE_KERNEL_EXPORT void checkDomainSize(double cells, DomainKind kind);
 
 /// The boundary of a planar domain, sampled with segments of about the given length, 1e-5 to 1e3;
-/// of a solid one from 1e-4. Throws Error otherwise.
+/// for a solid domain, from 1e-4. Throws Error otherwise.
 TAUTLINE_KERNEL_EXPORT PlanarBoundary planarBoundary(const std::string& name, double spacing);
 /// The boundary of a solid domain.
 TAUTLINE_KERNEL_EXPORT SolidBoundary solidBoundary(const std::string& name, double spacing);
@@ -101,8 +101,8 @@ TAUTLINE_KERNEL_EXPORT StructuredMesh structuredRectangle(Index cells);
  *
  * The legs of a triangle are h sqrt(r) and h / sqrt(r), so that the number of triangles in the
  * square is 2 / h^2 for every aspect ratio r. 1 / (h sqrt(r)) and sqrt(r) / h must be whole
- * numbers; the interaction layer has as many whole layers as are needed to be at least `layer`
- * wide. Throws Error otherwise.
+ * numbers; the interaction layer has the smallest number of whole layers that makes it at least
+ * `layer` wide. Throws Error otherwise.
  */
 TAUTLINE_KERNEL_EXPORT StructuredMesh structuredSquare(double h, double aspectRatio, double layer);
 

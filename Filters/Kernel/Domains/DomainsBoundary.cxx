@@ -13,8 +13,8 @@ namespace
 constexpr int Outer = 1;
 constexpr int Inner = 2;
 constexpr int Third = 3;
-/// The domains are about 1 large; a finer spacing than the smallest is that of more cells than any
-/// memory holds.
+/// The domains have a size of about 1; a spacing below the smallest would need more cells than fit
+/// into memory.
 constexpr double SmallestPlanarSpacing = 1e-5;
 constexpr double SmallestSolidSpacing = 1e-4;
 constexpr double LargestSpacing = 1e3;
@@ -24,8 +24,8 @@ void requireSpacing(double spacing, double smallest)
   if (!(spacing >= smallest && spacing <= LargestSpacing))
   {
     std::ostringstream text;
-    text << "the spacing of a boundary is " << spacing << "; from " << smallest << " to "
-         << LargestSpacing << " is allowed";
+    text << "the spacing of a boundary is " << spacing << "; it must be from " << smallest << " to "
+         << LargestSpacing << " (inclusive)";
     throw Error(text.str());
   }
 }
@@ -44,7 +44,7 @@ public:
     this->First = static_cast<Index>(this->Result.points.size() / 2);
     this->add(x, y);
   }
-  /// A curve p(t), t from 0 to 1, from where the pen is; `length` is that of the curve, about.
+  /// A curve p(t), t from 0 to 1, from the current point; `length` is its approximate length.
   void curve(const std::function<std::array<double, 2>(double)>& p, double length, int marker,
     int fewest = 1)
   {
@@ -78,7 +78,7 @@ public:
       },
       radius * std::abs(to - from), marker, 1 + static_cast<int>(2 * std::abs(to - from)));
   }
-  /// Ends the outline: its last point is its first one.
+  /// Closes the outline: its last point is its first point.
   void close()
   {
     this->Result.points.resize(this->Result.points.size() - 2);
@@ -179,7 +179,7 @@ void drawBarrier(Pen& pen)
     { Outer, Inner, Inner, Inner, Outer, Outer, Outer, Third, Third, Third, Outer, Outer });
 }
 
-/// A skull with a fissure and two horned ventricles, wide as before the treatment.
+/// A skull with a fissure and two horned ventricles, as wide as before the treatment.
 void drawBrain(Pen& pen)
 {
   pen.moveTo(0.8, 0);
@@ -243,7 +243,7 @@ const std::map<std::string, void (*)(Pen&)> Planar = {
 };
 
 /// A planar boundary between z = 0 and z = height: side facets in layers, bottom and top with
-/// holes. Markers of the sides are those of the segments; 4 is the bottom, 5 the top.
+/// holes. Sides have the markers of the segments; 4 is the bottom, 5 the top.
 SolidBoundary extrude(const PlanarBoundary& plane, double height, double spacing)
 {
   SolidBoundary solid;
@@ -271,7 +271,8 @@ SolidBoundary extrude(const PlanarBoundary& plane, double height, double spacing
       side.marker = plane.markers[s];
       solid.facets.push_back(side);
     }
-    // outlines are runs of consecutive points; an outline starts where a segment does not go on
+    // outlines are runs of consecutive points; an outline starts where a segment does not continue
+    // the previous one
     if (s == 0 || plane.segments[2 * s - 1] != a)
     {
       bottom.polygons.emplace_back();
@@ -302,7 +303,7 @@ void addSphere(SolidBoundary& solid, const Vec3& center, double radius, Index n,
     { 1, 5, 9 }, { 5, 11, 4 }, { 11, 10, 2 }, { 10, 7, 6 }, { 7, 1, 8 }, { 3, 9, 4 }, { 3, 4, 2 },
     { 3, 2, 6 }, { 3, 6, 8 }, { 3, 8, 9 }, { 4, 9, 5 }, { 2, 4, 11 }, { 6, 2, 10 }, { 8, 6, 7 },
     { 9, 8, 1 } };
-  // points are shared between faces by their weights of the twelve corners
+  // points are shared between faces, identified by their weights of the twelve corners
   std::map<std::array<std::pair<int, Index>, 3>, Index> known;
   const auto point = [&](const int* face, Index i, Index j)
   {

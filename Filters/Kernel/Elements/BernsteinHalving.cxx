@@ -7,9 +7,9 @@ namespace tautline
 {
 namespace
 {
-/// Rows of at least this many coefficients are halved as they lie in memory.
+/// Rows of at least this many coefficients are halved without gathering them.
 constexpr int WideRow = 4;
-/// Coefficients of a line: of the square of the adjugate of a solid of the largest order.
+/// Coefficients of a line: for the squared adjugate of a solid of the largest order.
 constexpr int MaxLine = 4 * MaxElementOrder + 1;
 }
 
@@ -64,7 +64,7 @@ void BernsteinHalving::addGroups(Direction& direction)
     group.length = length(begin);
     const int lanes = std::min(Lanes, count - begin);
     const auto line = [&](int lane) { return begin + std::min(lane, lanes - 1); };
-    // Beyond the end of a line its last coefficient is repeated; what is made of it is not stored.
+    // Beyond the end of a line, its last coefficient is repeated; the results there are not stored.
     const auto entry = [&](int lane, int row)
     {
       const int n = line(lane);
@@ -114,7 +114,8 @@ Vec3 BernsteinHalving::place(const Vertices& vertices, const BernsteinCorner& co
 }
 
 //------------------------------------------------------------------------------
-/// @param difference of the coefficients at three places of a line; it reaches over Reach of them
+/// @param difference a function of the coefficients at up to three consecutive positions of a line;
+///   it spans Reach of them
 template <int Reach, class Difference>
 double BernsteinHalving::largest(
   const Direction& direction, const double* c, const Difference& difference) const
@@ -183,9 +184,9 @@ void BernsteinHalving::estimate(int direction, Measures& kept, Measures& other) 
 void BernsteinHalving::estimateOne(
   const Direction& halved, Measures& measures, int kept, int moved) const
 {
-  // The vertex `moved` has gone to the middle M of its edge with `kept`: second differences along
-  // the edge become a quarter. Along M C, C another vertex, they are about the mean of those from
-  // both ends.
+  // The vertex `moved` is now at the middle M of its edge with `kept`: second differences along the
+  // edge become a quarter. Along M C, with another vertex C, they are about the mean of the values
+  // from both ends.
   const auto edge = [&](int a, int b) -> double&
   {
     const Direction* found = &halved;

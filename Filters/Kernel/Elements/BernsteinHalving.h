@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BernsteinHalving.h
- * @brief Bisects boxes of the domain of Bernstein polynomials, and finds where to do it.
- * Internal: not installed.
+ * @brief Bisects boxes of the domain of Bernstein polynomials and chooses the directions. Internal:
+ * not installed.
  */
 #ifndef tautline_BernsteinHalving_h
 #define tautline_BernsteinHalving_h
@@ -37,7 +37,7 @@ public:
   const Vertices& domain() const { return this->Domain; }
   Vec3 place(const Vertices& vertices, const BernsteinCorner& corner) const;
 
-  /// Halves coefficients: `c` keeps those of the half at the vertex `from`, `other` gets the rest.
+  /// Halves coefficients: `c` keeps the half at the vertex `from`, `other` receives the other half.
   void halve(int direction, double* c, double* other) const;
   void halve(int direction, Vertices& kept, Vertices& other) const;
 
@@ -45,19 +45,20 @@ public:
   double bend(int direction, const double* c) const;
   /// The largest absolute difference of neighboring coefficients along a direction.
   double slope(int direction, const double* c) const;
-  /// Measures that are quadratic in the size, for both halves of a box that had `kept`.
+  /// Estimates measures that are quadratic in the size for both halves of a box with the measures
+  /// `kept`.
   void estimate(int direction, Measures& kept, Measures& other) const;
 
 private:
   static constexpr int Lanes = 8;
 
-  /// Lines that are halved side by side, one per lane, longest first.
+  /// Lines that are halved together, one per lane, longest first.
   struct Group
   {
     int length;                  ///< of the longest line
     std::size_t entries;         ///< in Entries: Lanes per row, positions of coefficients
     std::size_t mirrored;        ///< in Entries: the same from the other end of each line
-    std::size_t counts;          ///< in Entries: by row, the lines that reach so far
+    std::size_t counts;          ///< in Entries: by row, the number of lines that are that long
     std::array<int, Lanes> last; ///< the last row of each line
   };
   /// One edge of a factor.

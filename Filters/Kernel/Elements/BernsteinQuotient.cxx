@@ -8,7 +8,7 @@ namespace tautline
 {
 namespace
 {
-/// Bisections of a box after which its measures are taken again.
+/// The number of bisections of a box after which its measures are recomputed.
 constexpr int RefreshAge = 4;
 /// A denominator that is not positive is replaced by this.
 constexpr double tiny = 1e-300;
@@ -99,7 +99,7 @@ void BernsteinQuotient::addSecant(const double* sum)
   low = std::max(low, 0.0);
   high = std::max(high, low);
   const double start = threeHalves(low), width = high - low;
-  // Of a narrow range the tangent at the upper end, which is steeper.
+  // For a narrow range, use the tangent at the upper end, which is steeper.
   const double a =
     width > 1e-9 * high ? (threeHalves(high) - start) / width : 0.5 * std::sqrt(high / 3);
   const double c = std::max(start - a * low, threeHalves(high) - a * high);
@@ -163,8 +163,8 @@ void BernsteinQuotient::bound(Box& box)
 //------------------------------------------------------------------------------
 void BernsteinQuotient::measure(Box& box)
 {
-  // By direction, what the bound misses: the distance of a coefficient of D - q E from the value
-  // there, and the rise of the denominators, which is what the bound of the root depends on.
+  // By direction, the gap of the bound: the distance of a coefficient of D - q E from the value
+  // there, and the increase of the denominators, on which the bound of the root depends.
   this->bound(box);
   double* remainder = this->Sum.data();
   const double* d = this->at(box);
@@ -184,7 +184,8 @@ void BernsteinQuotient::measure(Box& box)
       const double* f = this->at(box, static_cast<int>(i));
       rise += n * this->Halving.slope(direction, f) / meanOf(f, this->Size);
     }
-    // An eighth: of the second derivative of a line's middle; a tenth: of (x / 3)^(3/2).
+    // The factor 1/8 comes from the second derivative at the middle of a line; 1/10 from (x /
+    // 3)^(3/2).
     box.measures[direction] =
       0.125 * (n - 1) * this->Halving.bend(direction, remainder) + 0.1 * level * rise * rise;
   }
@@ -281,7 +282,7 @@ QuotientMinimum BernsteinQuotient::minimum(double power, double tolerance, doubl
   this->lookAtCorners(root, result);
   const auto raised = [&](double x) { return raise(x, power); };
   const double level = above > 0 ? std::pow(above, 1 / power) : above;
-  // The lowest bound with which the search ends, for the best value so far.
+  // The lower bound at which the search ends, for the best value so far.
   double best = 0, enough = 0;
   const auto update = [&]
   {

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BernsteinQuotient.h
- * @brief The minimum of a polynomial over a root of products of others, by branch and bound.
- * Internal: not installed.
+ * @brief The minimum of the quotient of a polynomial and a root of a product of polynomials, by
+ * branch and bound. Internal: not installed.
  *
- * With D the numerator and F_i > 0 the other polynomials, all of one Bernstein space, over a box
- * the denominator is at most a linear combination E of the F_i, and D / E at least the smallest
- * quotient of coefficients D_k / E_k where it is positive:
- * - F itself;
- * - (F / 3)^(3/2) is convex, and below its secant between the smallest and the largest F_k;
- * - sqrt(F G) is at most (t F + G / t) / 2, where t is chosen from the means of F and G;
- * - sqrt(F G H) is at most (S / 3)^(3/2), where S is a sum with weights of product 1.
- * The bounds converge with the square of the size of the boxes.
+ * Let D be the numerator and F_i > 0 the other polynomials, all in one Bernstein space. Over a box,
+ * the denominator is at most a linear combination E of the F_i, and D / E is at least the smallest
+ * quotient of coefficients D_k / E_k if it is positive. E is:
+ * - for F: F itself;
+ * - for (F / 3)^(3/2), which is convex: its secant between the smallest and the largest F_k;
+ * - for sqrt(F G): (t F + G / t) / 2, where t is chosen from the means of F and G;
+ * - for sqrt(F G H): the bound of (S / 3)^(3/2), where S is a sum with weights of product 1. The
+ * bounds converge with the square of the size of the boxes.
  */
 #ifndef tautline_BernsteinQuotient_h
 #define tautline_BernsteinQuotient_h
@@ -37,12 +37,12 @@ struct QuotientMinimum
 {
   double lower = 0;
   double upper = 0;      ///< a value
-  Vec3 at = { 0, 0, 0 }; ///< where it has that value
+  Vec3 at = { 0, 0, 0 }; ///< the position of that value
 };
 
 /**
  * @class BernsteinQuotient
- * @brief Searches in quotients of one kind.
+ * @brief Searches quotients of one kind.
  *
  * Has its own memory: use one object per thread. The tables must outlive it.
  */
@@ -52,17 +52,17 @@ public:
   BernsteinQuotient(QuotientDenominator denominator, const BernsteinSpace& space,
     const std::vector<BernsteinBisection>& bisections, const std::vector<BernsteinCorner>& corners);
 
-  /// Where the coefficients of polynomial i are put: 0 the numerator, then the others.
+  /// The storage for the coefficients of polynomial i: 0 is the numerator, then the others.
   double* coefficients(int i) { return this->Pool.data() + i * this->Size; }
 
   /**
-   * @param power the quotient is raised to this power, and the tolerance refers to the result, as
-   * do the bounds; 1 or less
+   * @param power the quotient is raised to this power; the tolerance and the bounds refer to the
+   * result; at most 1
    * @param tolerance the largest distance of the bounds
-   * @param above the search also ends where the lower bound is at least this value
+   * @param above the search also ends when the lower bound reaches this value
    *
-   * Ends where the numerator is found to be negative, with the value there (of the numerator's
-   * sign) as upper bound and the lower bound -infinity.
+   * Ends if the numerator is found to be negative, with the value there (with the sign of the
+   * numerator) as the upper bound and -infinity as the lower bound.
    */
   QuotientMinimum minimum(double power, double tolerance, double above);
 
@@ -79,7 +79,7 @@ private:
   {
     double least; ///< lower bound of the quotient, at least 0
     int slot;
-    int age; ///< bisections since the measures were taken
+    int age; ///< bisections since the measures were computed
     BernsteinHalving::Vertices vertices;
     BernsteinHalving::Measures measures;
   };
@@ -90,7 +90,7 @@ private:
   }
   int newSlot();
   void push(const Box& box);
-  /// The denominators, and the bound.
+  /// Computes the denominators and the bound.
   void bound(Box& box);
   void addSecant(const double* sum);
   void measure(Box& box);
@@ -102,7 +102,7 @@ private:
   QuotientDenominator Denominator;
   BernsteinHalving Halving;
   const std::vector<BernsteinCorner>& Corners;
-  std::size_t Count; ///< of polynomials, with the numerator
+  std::size_t Count; ///< number of polynomials, including the numerator
   std::size_t Size;
   std::vector<double> Pool, Sum, Below;
   std::vector<int> Free;

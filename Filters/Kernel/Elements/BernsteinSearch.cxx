@@ -10,7 +10,7 @@ namespace tautline
 {
 namespace
 {
-/// Bisections of a box after which its bends are measured again.
+/// The number of bisections of a box after which its bends are recomputed.
 constexpr int MaxAge = 4;
 constexpr double smallestTolerance = 1e-12;
 }
@@ -114,6 +114,7 @@ BernsteinSearch::Box BernsteinSearch::split(Box& box)
   Box other = box;
   other.slot = this->newSlot(); // may move the pool
   double *c = this->at(box), *d = this->at(other);
+  // Bisect in the direction in which the polynomial deviates most from linear.
   const auto bends = box.bends.begin();
   const int direction =
     static_cast<int>(std::max_element(bends, bends + this->Halving->directions()) - bends);
@@ -144,6 +145,7 @@ BernsteinSign BernsteinSearch::sign(const double* coefficients, double noise)
     }
     return false;
   };
+  // A box is open while its smallest coefficient, a lower bound, allows a worse verdict.
   const auto open = [&](const Box& box)
   { return verdict == BernsteinSign::Positive ? box.least <= noise : box.least < -noise; };
   const Box root = this->begin(coefficients);
@@ -152,7 +154,7 @@ BernsteinSign BernsteinSearch::sign(const double* coefficients, double noise)
     return BernsteinSign::Negative;
   }
   this->push(root);
-  while (!this->Heap.empty() && open(this->Heap.front())) // else no other one is open
+  while (!this->Heap.empty() && open(this->Heap.front())) // otherwise no other box is open
   {
     if (this->Splits == MaxSplits)
     {

@@ -3,9 +3,9 @@
  * @file BernsteinSearch.h
  * @brief The sign and the minimum of a polynomial in Bernstein form, by branch and bound.
  *
- * A box of the domain whose smallest coefficient leaves the question open is bisected along the
- * edge along which the polynomial bends most; the box with the smallest coefficient comes first.
- * The bounds converge with the square of the size of the boxes.
+ * A box of the domain whose smallest coefficient is inconclusive is bisected along the edge along
+ * which the polynomial bends most; the box with the smallest coefficient is processed first. The
+ * bounds converge with the square of the size of the boxes.
  */
 #ifndef tautline_BernsteinSearch_h
 #define tautline_BernsteinSearch_h
@@ -22,16 +22,16 @@ class BernsteinHalving;
 enum class BernsteinSign : signed char
 {
   Negative = -1, ///< somewhere below the negative of the noise
-  Zero = 0,      ///< nowhere below that, but somewhere at most the noise
+  Zero = 0,      ///< nowhere below that, but somewhere not above the noise
   Positive = 1   ///< above the noise everywhere
 };
 
-/// How near to each other the bounds of a minimum are wanted.
+/// The tolerances for the bounds of a minimum.
 struct MinimumTolerance
 {
   /// The largest distance of the bounds over the largest absolute coefficient; at least 1e-12.
   double relative = 1e-4;
-  /// The search also ends where the lower bound is above this level.
+  /// The search also ends when the lower bound exceeds this level.
   double level = std::numeric_limits<double>::infinity();
 };
 
@@ -40,12 +40,12 @@ struct BernsteinMinimum
 {
   double lower = 0;
   double upper = 0;      ///< a value of the polynomial
-  Vec3 at = { 0, 0, 0 }; ///< where it has that value
+  Vec3 at = { 0, 0, 0 }; ///< the position of that value
 };
 
 /**
  * @class BernsteinSearch
- * @brief Searches in polynomials of one space.
+ * @brief Searches polynomials of one space.
  *
  * Has its own memory, which grows up to a few megabytes in hard cases and is kept: use one object
  * per thread. The tables must outlive it.
@@ -65,9 +65,9 @@ public:
   BernsteinSign sign(const double* coefficients, double noise);
   BernsteinMinimum minimum(const double* coefficients, const MinimumTolerance& tolerance);
 
-  /// Bisections of the last search.
+  /// The number of bisections in the last search.
   int splits() const { return this->Splits; }
-  /// Whether the last search ended by itself, and not after MaxSplits bisections.
+  /// Whether the last search was conclusive, that is, ended before MaxSplits bisections.
   bool decided() const { return this->Decided; }
   static constexpr int MaxSplits = 4000;
 

@@ -63,7 +63,7 @@ BernsteinSpace::BernsteinSpace(std::vector<BernsteinFactor> factors)
     this->Dimension += factor.dimension;
     if (this->Dimension > 3)
     {
-      throw Error("A Bernstein space has at most three coordinates; give fewer factors.");
+      throw Error("A Bernstein space has at most three coordinates; use fewer factors.");
     }
     std::vector<BernsteinExponents> exponents;
     std::vector<double> multinomials;
@@ -94,8 +94,8 @@ int BernsteinSpace::indexOf(const BernsteinExponents& exponents) const
   int index = 0;
   for (std::size_t f = 0; f < this->Factors.size(); ++f)
   {
-    // The layers below the last exponent, the rows below the one before, and the position in the
-    // row: what remains of the degree shrinks on the way.
+    // Add the layers below the last exponent, the rows below the previous one, and the position in
+    // the row, while the remaining degree decreases.
     int remaining = this->Factors[f].degree, own = 0;
     for (int k = this->Factors[f].dimension - 1; k >= 0; --k)
     {
@@ -129,6 +129,8 @@ std::vector<long double> BernsteinSpace::valuesAt(const std::array<long double, 
       long double origin = 1;
       for (int vertex = this->Factors[f].dimension; vertex >= 0; --vertex)
       {
+        // The barycentric coordinate of the vertex; the origin comes last, when the others have
+        // been subtracted.
         const long double coordinate = vertex > 0 ? at[this->First[f] + vertex - 1] : origin;
         origin -= vertex > 0 ? coordinate : 0;
         const int exponent = this->vertexExponent(static_cast<int>(f), vertex, this->Exponents[k]);

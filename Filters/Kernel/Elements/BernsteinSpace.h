@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BernsteinSpace.h
- * @brief Polynomials in Bernstein form over products of simplices, and how they are multiplied and
- * subdivided.
+ * @brief Polynomials in Bernstein form over products of simplices, with multiplication and
+ * subdivision.
  *
  * The domain is a product of simplices, the *factors*: a triangle {2}, a square {1, 1}, a
- * tetrahedron {3}, a cube {1, 1, 1}, a wedge {2, 1}. The degree may differ by factor. A polynomial
- * is between its smallest and its largest Bernstein coefficient, and has the coefficient of a
- * corner as its value there.
+ * tetrahedron {3}, a cube {1, 1, 1}, a wedge {2, 1}. The degree may differ by factor. The values of
+ * a polynomial lie between its smallest and its largest Bernstein coefficient, and the coefficient
+ * of a corner is its value there.
  */
 #ifndef tautline_BernsteinSpace_h
 #define tautline_BernsteinSpace_h
@@ -25,15 +25,15 @@ struct BernsteinFactor
   int degree = 0;
 };
 
-/// The exponents of a Bernstein polynomial by coordinate; of a simplex without the last one, which
-/// is the degree less their sum.
+/// The exponents of a Bernstein polynomial by coordinate; for a simplex, without the last one,
+/// which is the degree minus their sum.
 using BernsteinExponents = std::array<int, 3>;
 
 /**
  * @class BernsteinSpace
  * @brief The Bernstein polynomials of one degree per factor, in a fixed order.
  *
- * The exponent of the first coordinate runs fastest. Up to three coordinates in all.
+ * The exponent of the first coordinate runs fastest. Up to three coordinates in total.
  */
 class TAUTLINE_KERNEL_EXPORT BernsteinSpace
 {
@@ -42,18 +42,18 @@ public:
   explicit BernsteinSpace(std::vector<BernsteinFactor> factors);
 
   int size() const { return static_cast<int>(this->Exponents.size()); }
-  /// Coordinates in all.
+  /// The total number of coordinates.
   int dimension() const { return this->Dimension; }
   const std::vector<BernsteinFactor>& factors() const { return this->Factors; }
   /// The position of the first coordinate of a factor.
   int firstCoordinate(int factor) const { return this->First[factor]; }
-  /// The polynomials over the factors before this one: the stride of its own.
+  /// The number of polynomials over the previous factors: the stride of this factor.
   int stride(int factor) const { return this->Strides[factor]; }
 
   const BernsteinExponents& exponents(int k) const { return this->Exponents[k]; }
   int indexOf(const BernsteinExponents& exponents) const;
-  /// The exponent of a vertex of a factor: of its coordinate, or for vertex 0, the origin, what the
-  /// coordinates leave of the degree.
+  /// The exponent of a vertex of a factor: the exponent of its coordinate or, for vertex 0 (the
+  /// origin), the degree minus the sum of the others.
   int vertexExponent(int factor, int vertex, const BernsteinExponents& exponents) const;
   /// The product of the multinomial coefficients of the factors.
   double multinomial(int k) const { return this->Multinomials[k]; }
@@ -73,8 +73,8 @@ private:
 };
 
 /**
- * @brief Where the products of scaled coefficients are added: those of first[i] and second[j] to
- * targets(i)[j].
+ * @brief Where the products of scaled coefficients are added: the product of first[i] and second[j]
+ * to targets(i)[j].
  *
  * A *scaled* coefficient is the coefficient times its multinomial; the product of two polynomials
  * is then the plain convolution of their scaled coefficients.
@@ -102,21 +102,22 @@ private:
  * at the middle of an edge of one of its factors.
  *
  * The vertices `from` and `to` of a factor are the ends of the edge. A line begins at a coefficient
- * without `to`, and each step moves one from the exponent of `from` to that of `to`.
+ * with exponent 0 of `to`, and each step moves one from the exponent of `from` to the exponent of
+ * `to`.
  */
 struct BernsteinBisection
 {
   int factor = 0;
   int from = 0, to = 1;
-  /// The number of neighboring lines that lie side by side in memory and are of the same length:
-  /// each entry of `lines` stands for this many.
+  /// The number of lines of equal length that are contiguous in memory: each entry of `lines`
+  /// stands for this many.
   int width = 1;
   int longest = 0;          ///< coefficients of the longest line
   std::vector<int> begins;  ///< of line l: entries [begins[l], begins[l + 1]), longest lines first
   std::vector<int> entries; ///< positions of coefficients
 };
 
-/// One for each edge of each factor that has a degree above 0.
+/// One for each edge of each factor with a degree above 0.
 TAUTLINE_KERNEL_EXPORT std::vector<BernsteinBisection> bisections(const BernsteinSpace& space);
 
 /// A corner of the domain.

@@ -5,10 +5,11 @@ namespace tautline
 {
 namespace
 {
-/// Roundings of a triple product and of the factors; those of the sums come in addition.
+/// The number of roundings of a triple product and of the factors, without the sums.
 constexpr int fixedRoundings = 20;
 
-/// The derivative by a coordinate of a factor; the factors 1 - w of a pyramid are left out.
+/// The derivative with respect to a coordinate of a factor; the factors 1 - w of a pyramid are left
+/// out.
 DerivativeForm derivative(const BernsteinSpace& map, int factor, int coordinate, bool pyramid)
 {
   constexpr int height = 2; // the factor w of a pyramid

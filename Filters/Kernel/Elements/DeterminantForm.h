@@ -5,13 +5,13 @@
  *
  * With x the map and u, v, w the reference coordinates, det = x_u . (x_v x x_w), and the normal of
  * a surface is x_u x x_v. The derivatives are differences of control points, and a product is a
- * convolution of scaled coefficients: all its weights are positive, so that rounding errors stay
+ * convolution of scaled coefficients: all its weights are positive, so that rounding errors remain
  * small multiples of |x_u| |x_v| |x_w|.
  *
- * In the collapsed cube of a pyramid x_u and x_v have the factor 1 - w, which is left out: in
- * scaled form it only drops the coefficients at w = 1, which vanish. The determinant is then the
- * one with respect to the coordinates of the pyramid itself, and bounded at the apex for each
- * direction from which the apex is approached.
+ * In the collapsed cube of a pyramid, x_u and x_v have the factor 1 - w, which is left out: in
+ * scaled form, this only drops the coefficients at w = 1, which vanish. The determinant is then
+ * taken with respect to the coordinates of the pyramid itself, and is bounded at the apex for each
+ * direction of approach.
  *
  * A. Johnen, J.-F. Remacle, C. Geuzaine, "Geometrical validity of curvilinear finite elements",
  * J. Comput. Phys. 233 (2013); A. Johnen, C. Geuzaine, "Geometrical validity of curvilinear
@@ -36,10 +36,10 @@ struct ControlMatrix
   int rows() const { return static_cast<int>(this->offsets.size()) - 1; }
 };
 
-/// A derivative of the map by one coordinate.
+/// A derivative of the map with respect to one coordinate.
 struct DerivativeForm
 {
-  /// Of one coefficient: scaled = scale (control[high] - control[low]).
+  /// One coefficient: scaled = scale (control[high] - control[low]).
   struct Difference
   {
     int high, low;
@@ -53,7 +53,7 @@ struct DerivativeForm
 struct DeterminantForm
 {
   DeterminantForm() = default;
-  /// @param pyramid whether the space is that of a collapsed cube
+  /// @param pyramid whether the space belongs to a collapsed cube
   DeterminantForm(const BernsteinSpace& map, bool pyramid);
 
   std::vector<DerivativeForm> derivatives; ///< by coordinate
@@ -61,17 +61,17 @@ struct DeterminantForm
   BernsteinProduct cross;                  ///< x_v times x_w; in two dimensions x_u times x_v
   BernsteinProduct dot;                    ///< x_u times cofactors
   BernsteinSpace space;                    ///< of the determinant, or of the normal of a surface
-  /// What turns the scaled product of the differences into coefficients: the degrees over the
+  /// Converts the scaled product of the differences into coefficients: the degrees over the
   /// multinomials of `space`.
   std::vector<double> factors;
   std::vector<BernsteinBisection> bisections; ///< of `space`
   std::vector<BernsteinCorner> corners;       ///< of `space`
-  /// Only of surfaces: the square of the normal.
+  /// Only for surfaces: the space of the squared normal.
   BernsteinSpace squareSpace;
   BernsteinProduct square;
   std::vector<BernsteinBisection> squareBisections;
   std::vector<BernsteinCorner> squareCorners;
-  /// Roundings of one coefficient, for error bounds.
+  /// The number of roundings of one coefficient, for error bounds.
   int roundings = 0;
 };
 }

@@ -37,7 +37,7 @@ inline Packet rootOf(Packet x)
 
 /**
  * @class DeterminantWork
- * @brief From nodes to coefficients, with the memory that this needs.
+ * @brief Computes coefficients from nodes, with the necessary memory.
  *
  * The nodes are relative to the first one. In the plane they are x y 0.
  */
@@ -80,9 +80,9 @@ public:
   std::vector<Vector> nodes;
   std::vector<Scalar> coefficients; ///< of the determinant
   std::vector<Vector> normals;      ///< coefficients of the normal of a surface
-  T noise; ///< bound of the error of a coefficient; NaN or infinite where a node is
+  T noise; ///< bound of the error of a coefficient; NaN or infinite if a node is
 
-  /// Determinants of a solid and of an element of the plane.
+  /// The determinants of a solid or of a planar element.
   void run()
   {
     this->differentiate();
@@ -101,7 +101,7 @@ public:
     }
   }
 
-  /// Normals of a surface; the noise is that of their components.
+  /// The normals of a surface; the noise bounds the error of their components.
   void runNormals()
   {
     this->differentiate();
@@ -133,7 +133,7 @@ public:
     return sum;
   }
 
-  /// Takes the components of the normals along a unit vector for the determinant.
+  /// Uses the components of the normals along a unit vector as the determinant.
   void project(const Vector& direction)
   {
     for (std::size_t k = 0; k < this->normals.size(); ++k)
@@ -163,7 +163,7 @@ private:
     }
   }
 
-  /// Control points, scaled derivatives and the noise.
+  /// Computes control points, scaled derivatives and the noise.
   void differentiate()
   {
     this->findControls();
@@ -174,14 +174,14 @@ private:
       farthest2 = larger(farthest2, square);
       sum += square;
     }
-    const T notFinite = 0.0 * sum; // 0, or NaN, which a maximum may lose
+    const T notFinite = 0.0 * sum; // 0, or NaN, which a maximum may drop
     T lengths[3];
     double magnitudes[3];
     for (std::size_t d = 0; d < this->Derivatives.size(); ++d)
     {
       lengths[d] = this->differences(d, magnitudes[d]);
     }
-    // An error of a control point is at most `shift`; two make a derivative.
+    // The error of a control point is at most `shift`; a derivative uses two.
     constexpr double unit = 0x1p-53;
     const ControlMatrix& matrix = this->Type.controls();
     const double products = 4 * unit * this->Form.roundings;
@@ -200,7 +200,8 @@ private:
     }
   }
 
-  /// The scaled derivative by a coordinate; returns the largest length of its coefficients.
+  /// The scaled derivative with respect to a coordinate; returns the largest length of its
+  /// coefficients.
   T differences(std::size_t d, double& magnitude)
   {
     Vector* result = this->Derivatives[d].data();

@@ -63,7 +63,7 @@ void checkOrders(ElementShape shape, const ElementOrders& orders)
   {
     throw Error(
       "The orders of a triangle, a tetrahedron, a pyramid and of the triangles of a wedge "
-      "cannot differ by axis; give equal orders.");
+      "cannot differ by axis; use equal orders.");
   }
 }
 
@@ -230,8 +230,8 @@ ElementBasis quadraticPyramid()
     add(basis, n & 1, n >> 1, 1, 1);
     add(basis, n & 1, n >> 1, 0, 2);
   }
-  // (1 - w)^2 f - c u (1 - u) v (1 - v) w (1 - w) for the monomials f of the base that bend: c is 8
-  // times the sum of f over its corners less the sum over the middles of its edges.
+  // (1 - w)^2 f - c u (1 - u) v (1 - v) w (1 - w) for the nonlinear monomials f of the base: c is 8
+  // times the sum of f over its corners minus the sum over the middles of its edges.
   const auto addCorrected = [&](int i, int j, double c)
   {
     basis.functions.push_back({ { 1, i, j, 0, 2 }, { -c, 1, 1, 1, 1 }, { c, 2, 1, 1, 1 },

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ElementBasis.h
- * @brief The polynomials of the maps of elements.
- * Internal: not installed.
+ * @brief The polynomials of element maps. Internal: not installed.
  */
 #ifndef tautline_ElementBasis_h
 #define tautline_ElementBasis_h
@@ -23,8 +22,8 @@ using ElementFunction = std::vector<ElementTerm>;
 struct ElementBasis
 {
   std::vector<BernsteinFactor> factors;   ///< of the space that contains the functions
-  std::vector<ElementFunction> functions; ///< empty: all of the space
-  bool centered = false; ///< whether 2u - 1 and 2v - 1 stand in the terms instead of u and v
+  std::vector<ElementFunction> functions; ///< empty: the whole space
+  bool centered = false; ///< whether the terms use 2u - 1 and 2v - 1 instead of u and v
 
   long double value(std::size_t function, const std::array<long double, 3>& at) const;
 };
@@ -34,21 +33,21 @@ ElementBasis completeBasis(ElementShape shape, const ElementOrders& orders);
 
 /// The quadratic polynomials of a quadrilateral with 8 nodes: of superlinear degree 2.
 ElementBasis serendipityQuadrilateral();
-/// Of a hexahedron with 20 nodes, and with 24 (VTK's bi-quadratic quadratic hexahedron).
+/// For a hexahedron with 20 nodes, or with 24 (VTK's bi-quadratic quadratic hexahedron).
 ElementBasis serendipityHexahedron(bool biquadratic);
-/// Quadratic with the bubble, of a triangle with 7 nodes.
+/// For a triangle with 7 nodes: quadratic with the bubble.
 ElementBasis bubbleTriangle();
-/// Quadratic with the bubbles of the faces and of the interior, of a tetrahedron with 15 nodes.
+/// For a tetrahedron with 15 nodes: quadratic with the bubbles of the faces and the interior.
 ElementBasis bubbleTetrahedron();
-/// Of a wedge with 15 nodes: quadratic over the triangle times linear along w, and linear times
+/// For a wedge with 15 nodes: quadratic over the triangle times linear along w, and linear times
 /// w^2.
 ElementBasis serendipityWedge();
-/// Of a wedge with 21 nodes: quadratic with the bubble over the triangle times quadratic along w.
+/// For a wedge with 21 nodes: quadratic with the bubble over the triangle times quadratic along w.
 ElementBasis bubbleWedge();
-/// Of VTK's quadratic pyramid with 13 nodes: a collapsed hexahedron with 20 nodes, with the
+/// For VTK's quadratic pyramid with 13 nodes: a collapsed hexahedron with 20 nodes, with the
 /// correction that makes it quadratic on its triangular faces.
 ElementBasis quadraticPyramid();
-/// Of VTK's tri-quadratic pyramid with 19 nodes.
+/// For VTK's tri-quadratic pyramid with 19 nodes.
 ElementBasis triquadraticPyramid();
 }
 #endif

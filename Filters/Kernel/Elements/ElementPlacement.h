@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ElementPlacement.h
- * @brief Where an element is computed: from its first node, in a plane, as its mirror image.
- * Internal: not installed.
+ * @brief The local coordinates of an element: relative to its first node, in a plane, as its mirror
+ * image. Internal: not installed.
  */
 #ifndef tautline_ElementPlacement_h
 #define tautline_ElementPlacement_h
@@ -24,7 +24,7 @@ inline double unitOfElement(double extent)
     : std::ldexp(1.0, std::clamp(std::ilogb(extent), -farthest, farthest));
 }
 
-/// Two unit vectors whose cross product is a unit normal; x and y for z.
+/// Two unit vectors whose cross product is the given unit normal; x and y for z.
 inline std::array<Vec3, 2> frameOfPlane(const Vec3& normal)
 {
   if (normal[2] == 1)
@@ -43,10 +43,10 @@ inline std::array<Vec3, 2> frameOfPlane(const Vec3& normal)
   return { first, cross(normal, first) };
 }
 
-/// How the elements of one type are loaded.
+/// Loads the elements of one type.
 struct ElementPlacement
 {
-  /// The arguments are those of JacobianCertifier.
+  /// The same arguments as for JacobianCertifier.
   ElementPlacement(const ElementType& type, const Vec3& normal, bool mirror)
     : plane(type.dimension() == 2 && norm(normal) > 0)
     , surface(type.dimension() == 2 && !plane)
@@ -55,7 +55,7 @@ struct ElementPlacement
   {
   }
 
-  /// Moves the first node to the origin, and elements of the plane into x y.
+  /// Moves the first node to the origin, and planar elements into x y.
   template <class T>
   void place(DeterminantWork<T>& work) const
   {
@@ -107,7 +107,7 @@ struct ElementPlacement
     return unit;
   }
 
-  bool plane;   ///< elements of a plane; in x y once they are loaded
+  bool plane;   ///< planar elements; in x y after loading
   bool surface; ///< elements of a surface in space
   bool mirrored;
   std::array<Vec3, 2> frame;

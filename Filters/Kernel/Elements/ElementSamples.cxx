@@ -92,7 +92,7 @@ ElementRule tetrahedronRule(int points)
   return rule;
 }
 
-/// The products of a rule and points of a further axis.
+/// The tensor product of a rule and the points of another axis.
 ElementRule extend(const ElementRule& rule, const std::vector<LinePoint>& line, int axis)
 {
   ElementRule result;
@@ -108,7 +108,7 @@ ElementRule extend(const ElementRule& rule, const std::vector<LinePoint>& line, 
   return result;
 }
 
-/// @param more Gauss points along an axis than its order
+/// @param the number of Gauss points along an axis beyond its order
 ElementRule ruleOf(const ElementType& type, int triangle, int tetrahedron, int more)
 {
   ElementRule rule = { { { 0, 0, 0 } }, { 1 } };
@@ -129,7 +129,7 @@ ElementRule ruleOf(const ElementType& type, int triangle, int tetrahedron, int m
   }
   if (type.shape() == ElementShape::Pyramid)
   {
-    // The volume of the collapsed cube is (1 - w)^2.
+    // The volume element of the collapsed cube is (1 - w)^2.
     double sum = 0;
     for (std::size_t i = 0; i < rule.places.size(); ++i)
     {
@@ -233,7 +233,7 @@ std::vector<Vec3> ElementSamples::gradientsAt(const Vec3& at) const
 std::array<Vec3, 3> ElementSamples::columns(
   const Vec3* gradients, const double* points, const Index* nodes) const
 {
-  // From the first node, which keeps the digits of small elements far from the origin.
+  // Relative to the first node, to preserve the precision of small elements far from the origin.
   const double* first = points + 3 * nodes[0];
   std::array<Vec3, 3> columns = { Vec3{ 0, 0, 0 }, Vec3{ 0, 0, 0 }, Vec3{ 0, 0, 0 } };
   for (int k = 0; k < this->Nodes; ++k)

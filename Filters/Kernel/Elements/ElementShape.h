@@ -23,8 +23,8 @@ enum class ElementShape : unsigned char
 /// The largest order along an axis.
 constexpr int MaxElementOrder = 6;
 
-/// The orders along u, v and w; in two dimensions the third one is 0. Those of a simplex and of a
-/// pyramid are equal; those of a wedge are equal in u and v.
+/// The orders along u, v and w; in two dimensions, the third one is 0. The orders of a simplex or a
+/// pyramid are equal; a wedge has equal orders in u and v.
 using ElementOrders = std::array<int, 3>;
 
 inline int dimensionOf(ElementShape shape)

@@ -28,7 +28,7 @@ struct DenseMatrix
   long double* operator[](int row) { return this->values.data() + row * this->columns; }
 };
 
-/// Replaces b by A^-1 b, by Gaussian elimination with row pivots; false where A is singular.
+/// Replaces b by A^-1 b, by Gaussian elimination with row pivots; false if A is singular.
 bool solve(DenseMatrix a, DenseMatrix& b)
 {
   constexpr long double singular = 1e-12L;
@@ -68,7 +68,7 @@ bool solve(DenseMatrix a, DenseMatrix& b)
   return true;
 }
 
-/// The places exponents / degree, each of which is the peak of a Bernstein polynomial: they
+/// The points exponents / degree, each of which is the maximum of a Bernstein polynomial: they
 /// determine a polynomial of the space.
 std::vector<std::array<long double, 3>> latticeOf(const BernsteinSpace& space)
 {
@@ -90,7 +90,7 @@ std::vector<std::array<long double, 3>> latticeOf(const BernsteinSpace& space)
   return points;
 }
 
-/// The Bernstein coefficients of the functions of a basis, a column each.
+/// The Bernstein coefficients of the functions of a basis, one column per function.
 DenseMatrix coefficientsOf(const BernsteinSpace& space, const ElementBasis& basis)
 {
   const int size = space.size(), count = static_cast<int>(basis.functions.size());
@@ -111,7 +111,7 @@ DenseMatrix coefficientsOf(const BernsteinSpace& space, const ElementBasis& basi
 
 void appendRow(ControlMatrix& matrix, const long double* row, int columns)
 {
-  // Entries are fractions with small denominators; what is smaller is rounding.
+  // Entries are fractions with small denominators; smaller numbers are rounding errors.
   constexpr long double nothing = 1e-14L;
   double sum = 0;
   for (int j = 0; j < columns; ++j)
@@ -147,7 +147,7 @@ DenseMatrix valuesAtNodes(const VtkElement& element, const BernsteinSpace& space
     }
     if (element.controlPoints)
     {
-      // The coefficient of the polynomial that has its peak at the node.
+      // The coefficient of the polynomial that has its maximum at the node.
       std::fill_n(values[i], count, 0.0L);
       values[i][std::max_element(bernstein.begin(), bernstein.end()) - bernstein.begin()] = 1;
     }
@@ -193,7 +193,7 @@ ElementType::ElementType(const VtkElement& element)
     const ElementOrders& p = element.orders;
     throw Error("An element with the orders " + std::to_string(p[0]) + ", " + std::to_string(p[1]) +
       ", " + std::to_string(p[2]) + " has " + std::to_string(functions) + " nodes, not " +
-      std::to_string(count) + "; give the orders of the element.");
+      std::to_string(count) + "; specify the orders of the element.");
   }
   // The control points are coefficients * values^-1 * nodes.
   DenseMatrix inverse(count, count);
@@ -203,8 +203,8 @@ ElementType::ElementType(const VtkElement& element)
   }
   if (!solve(valuesAtNodes(element, this->Space), inverse))
   {
-    throw Error("The nodes of an element do not determine its polynomials; give their reference "
-                "coordinates, each node at a place of its own.");
+    throw Error("The nodes of an element do not determine its polynomials; specify distinct "
+                "reference coordinates for all nodes.");
   }
   if (basis.functions.empty())
   {

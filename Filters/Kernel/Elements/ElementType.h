@@ -5,16 +5,16 @@
  * polynomials of the map, and its Bernstein form.
  *
  * Reference elements: the triangle and the tetrahedron with legs of length 1, the unit square and
- * cube, the prism over the triangle. A pyramid is described by the cube that collapses to it,
- * (u, v, w) -> (u (1 - w), v (1 - w), w), as VTK's pyramids of 5 and 13 nodes are.
+ * cube, the prism over the triangle. A pyramid is described by the cube that collapses to it, (u,
+ * v, w) -> (u (1 - w), v (1 - w), w), like VTK's pyramids with 5 and 13 nodes.
  *
  * VTK's types and their nodes:
  * - linear: 5, 9, 10, 12, 13, 14;
  * - quadratic: 22 (6), 23 (8), 24 (10), 25 (20), 26 (15), 27 (13), 28 (9), 29 (27), 30 (6), 31
  *   (12),
  *   32 (18), 33 (24), 34 (7), 37 (19);
- * - Lagrange: 69 to 73, of orders 1 to MaxElementOrder that may differ by axis, and of the special
- *   numbers of nodes 7 (triangle), 15 (tetrahedron) and 21 (wedge);
+ * - Lagrange: 69 to 73, with orders 1 to MaxElementOrder that may differ by axis, and with the
+ *   special node counts 7 (triangle), 15 (tetrahedron) and 21 (wedge);
  * - Bezier: 76 to 80, whose nodes are control points, with equal weights.
  */
 #ifndef tautline_ElementType_h
@@ -42,22 +42,22 @@ public:
    * @param vtkType a code of the list above
    * @param nodes of the cell
    * @param orders of a Lagrange or Bezier cell, the "HigherOrderDegrees" of VTK; {0, 0, 0}, the
-   * default, finds one order for all axes from the number of nodes. Ignored for other types.
-   * @throws Error for other types, numbers of nodes and orders
+   * default, derives one order for all axes from the number of nodes. Ignored for other types.
+   * @throws Error for other types, node counts and orders
    */
   static const ElementType& ofVtk(
     int vtkType, int nodes, const ElementOrders& orders = { 0, 0, 0 });
 
   /**
-   * @brief An element with nodes at any places: those of Gauss and Lobatto, or the order of nodes
-   * of another program.
-   * @param shape the map has all polynomials of the given orders over it; of a pyramid those of
-   * M. Bergot, G. Cohen, M. Durufle, "Higher-order finite elements for hybrid meshes using new
-   * nodal pyramidal elements", J. Sci. Comput. 42 (2010)
+   * @brief An element with nodes at any positions: Gauss or Lobatto points, or the node order of
+   * another program.
+   * @param shape the map has all polynomials of the given orders over it; for a pyramid, the
+   * polynomials of M. Bergot, G. Cohen, M. Durufle, "Higher-order finite elements for hybrid meshes
+   * using new nodal pyramidal elements", J. Sci. Comput. 42 (2010)
    * @param orders 1 to MaxElementOrder; the orders of a pyramid are equal
-   * @param coordinates of the nodes; u, v, w, of a pyramid in the collapsed cube
-   * @throws Error where there are not as many nodes as polynomials, or the nodes do not
-   * determine them
+   * @param coordinates of the nodes: u, v, w; for a pyramid, in the collapsed cube
+   * @throws Error if the numbers of nodes and polynomials differ, or if the nodes do not determine
+   * the polynomials
    */
   ElementType(
     ElementShape shape, const ElementOrders& orders, const std::vector<Vec3>& coordinates);
@@ -67,14 +67,15 @@ public:
   int nodes() const { return static_cast<int>(this->Coordinates.size()); }
   const ElementOrders& orders() const { return this->Orders; }
 
-  /// The reference coordinates of the nodes (of Bezier control points: of their nodes).
+  /// The reference coordinates of the nodes (for Bezier control points: of the corresponding
+  /// nodes).
   const std::vector<Vec3>& coordinates() const { return this->Coordinates; }
 
   /// The Bernstein polynomials in which the map is written.
   const BernsteinSpace& space() const { return this->Space; }
-  /// From nodes to control points: the coefficients of the map.
+  /// The matrix from nodes to control points: the coefficients of the map.
   const ControlMatrix& controls() const { return this->Controls; }
-  /// How the Jacobian determinant is computed from the control points.
+  /// The form of the Jacobian determinant in terms of the control points.
   const DeterminantForm& determinant() const { return this->Determinant; }
 
   /// The values of the shape functions at a point of the reference element, one per node.

@@ -40,7 +40,7 @@ struct JacobianCertifier::Work : ElementPlacement
     splitNoise = degree * levelRounding;
   }
 
-  /// Loads a batch, the last element repeated.
+  /// Loads a batch, repeating the last element.
   void loadBatch(const double* points, const Index* const* elements, int count)
   {
     Packet extent = {};
@@ -135,7 +135,7 @@ ElementValidity JacobianCertifier::search(const double* coefficients, double noi
 //------------------------------------------------------------------------------
 ElementValidity JacobianCertifier::searchSurface()
 {
-  // The normals of the loaded element, along their mean first.
+  // Classifies the normals of the loaded element, first along their mean.
   Work& work = *this->Memory;
   DeterminantWork<double>& one = work.one;
   if (!std::isfinite(one.noise))
@@ -165,7 +165,7 @@ ElementValidity JacobianCertifier::searchSurface()
       aside2 = std::max(aside2, sum);
     }
     along = this->search(work.coefficients.data(), 2 * one.noise);
-    // Where all normals are parallel, they vanish where they change their side.
+    // If all normals are parallel, they vanish where they change sides.
     const bool flat = aside2 <= 16 * one.noise * one.noise;
     if (along == ElementValidity::Valid || flat)
     {
@@ -179,7 +179,7 @@ ElementValidity JacobianCertifier::searchSurface()
 //------------------------------------------------------------------------------
 ElementValidity JacobianCertifier::searchSquare()
 {
-  // Positive where the normal does not vanish.
+  // The squared normal is positive where the normal does not vanish.
   Work& work = *this->Memory;
   const DeterminantWork<double>& one = work.one;
   const DeterminantForm& form = work.type.determinant();

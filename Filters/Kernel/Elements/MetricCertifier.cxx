@@ -16,10 +16,10 @@ constexpr double smallestMetricTolerance = 1e-9;
 
 /// The coefficients of a vector, scaled by their multinomials.
 using VectorPolynomial = std::vector<DeterminantWork<double>::Vector>;
-/// The same of a number.
+/// The same for a scalar.
 using ScalarPolynomial = std::vector<double>;
 
-/// The edges of a shape by its coordinates, and the corners by their edges.
+/// The edges of a shape in terms of its coordinates, and the corners in terms of their edges.
 struct CornerEdges
 {
   std::vector<Vec3> edges;
@@ -123,7 +123,7 @@ struct MetricCertifier::Work : ElementPlacement
       new BernsteinQuotient(denominatorOf(elements, metric, surface), space, bisections, corners));
   }
 
-  /// The power that makes the metric of the quotient.
+  /// The power that converts the quotient to the metric.
   double power() const
   {
     return this->surface                                                        ? 0.5
@@ -256,7 +256,7 @@ struct MetricCertifier::Work : ElementPlacement
     }
   }
 
-  /// Fills the searcher for a corner of the scaled Jacobian, for the first of the other metrics.
+  /// Fills the search for a corner of the scaled Jacobian; for other metrics, corner 0 only.
   void fill(int corner)
   {
     const double factor = this->surface ? this->scale() * this->scale() : this->scale();
@@ -318,7 +318,7 @@ struct MetricCertifier::Work : ElementPlacement
   ScalarPolynomial square;
   CornerEdges edges;
   std::vector<ControlMatrix> columns;        ///< of T, or the edges
-  std::vector<VectorPolynomial> polynomials; ///< the same of the loaded element
+  std::vector<VectorPolynomial> polynomials; ///< the same for the loaded element
   BernsteinSpace fourthSpace;
   BernsteinProduct fourthTargets;
   ScalarPolynomial fourth, other, scaledNumerator;
@@ -364,8 +364,8 @@ MetricBound MetricCertifier::minimum(const double* points, const Index* nodes, d
       bound.at = found.at;
     }
   };
-  // The corner of the scaled Jacobian with the smallest value comes first; the others only have to
-  // be above the smallest value so far.
+  // Start with the corner with the smallest scaled Jacobian; the others only need to be above the
+  // smallest value so far.
   const int corners = static_cast<int>(work.edges.corners.size());
   int first = 0;
   for (int corner = 0; corner < corners; ++corner)

@@ -20,7 +20,7 @@ BernsteinSpace differenceOf(const BernsteinSpace& larger, const BernsteinSpace& 
   return BernsteinSpace(factors);
 }
 
-/// The rows of polynomials times a fixed one, given by its coefficients.
+/// The rows of polynomials times a fixed polynomial, given by its coefficients.
 Rows multiply(const BernsteinSpace& space, const Rows& rows, int width,
   const BernsteinSpace& factorSpace, const std::vector<double>& factor,
   const BernsteinSpace& product)
@@ -164,7 +164,8 @@ ColumnForm::ColumnForm(const ElementType& type)
   {
     this->columns.push_back(elevate(derivatives[c].space, own[c], nodes, this->space));
   }
-  // With r = u (1 - w) and s = v (1 - w) the derivative by the height is x_w + u x_r + v x_s.
+  // With r = u (1 - w) and s = v (1 - w), the derivative with respect to the height is x_w + u x_r
+  // + v x_s.
   for (int c = 0; pyramid && c < 2; ++c)
   {
     const BernsteinSpace linear({ { 1, c == 0 ? 1 : 0 }, { 1, c == 1 ? 1 : 0 }, { 1, 0 } });
@@ -179,7 +180,7 @@ ColumnForm::ColumnForm(const ElementType& type)
 //------------------------------------------------------------------------------
 ControlMatrix ColumnForm::combine(const Vec3& weights, int nodes) const
 {
-  constexpr double nothing = 1e-13; // what is smaller is rounding
+  constexpr double nothing = 1e-13; // smaller values are rounding errors
   ControlMatrix matrix;
   for (int k = 0; k < this->space.size(); ++k)
   {

@@ -14,17 +14,17 @@ namespace tautline
 /// A matrix of up to 3 x 3 numbers, row by row.
 using ElementMatrix = std::array<Vec3, 3>;
 
-/// W^-1 of the ideal element with respect to the reference element; of a pyramid to the one that
-/// is not collapsed. In 2D the leading 2 x 2.
+/// W^-1 of the ideal element with respect to the reference element; for a pyramid, to the one that
+/// is not collapsed. In 2D, the leading 2 x 2 block.
 ElementMatrix idealInverseOf(ElementShape shape);
 
 /// det W^-1.
 double idealDeterminantOf(ElementShape shape);
 
-/// A space with the same factors, with the larger degree by factor.
+/// A space with the same factors and, for each factor, the larger degree.
 BernsteinSpace unionOf(const BernsteinSpace& a, const BernsteinSpace& b);
 
-/// Polynomials of one space in another one of at least its degrees.
+/// Converts polynomials of one space to another space of at least the same degrees.
 class BernsteinElevation
 {
 public:
@@ -42,17 +42,18 @@ private:
   bool Same = false;
 };
 
-/// The derivatives of the map by the coordinates of the reference element, of a pyramid by those
-/// that are not collapsed, all in one space.
+/// The derivatives of the map with respect to the coordinates of the reference element (for a
+/// pyramid, the coordinates that are not collapsed), all in one space.
 struct ColumnForm
 {
   explicit ColumnForm(const ElementType& type);
 
   BernsteinSpace space;
-  /// By coordinate: from nodes to coefficients.
+  /// By coordinate: the matrix from nodes to coefficients.
   std::vector<std::vector<double>> columns;
 
-  /// Linear combinations of the columns, scaled by the multinomials: from nodes to coefficients.
+  /// Linear combinations of the columns, scaled by the multinomials, as a matrix from nodes to
+  /// coefficients.
   ControlMatrix combine(const Vec3& weights, int nodes) const;
 };
 }

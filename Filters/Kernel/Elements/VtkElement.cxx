@@ -46,7 +46,8 @@ ElementOrders findOrders(ElementShape shape, int vtkType, int nodes, const Eleme
   reject(vtkType, nodes);
 }
 
-/// The Lagrange cells with bubbles: their basis and the nodes beside those of the quadratic cell.
+/// The Lagrange cells with bubbles: sets their basis and the nodes in addition to the quadratic
+/// cell.
 bool setSpecial(VtkElement& e, int nodes)
 {
   const ElementOrders two = uniformOrders(e.shape, 2);
@@ -66,7 +67,8 @@ bool setSpecial(VtkElement& e, int nodes)
   }
   else if (e.shape == ElementShape::Wedge && nodes == specialWedge)
   {
-    // The middles of the triangles come before those of the other faces; the last is the center.
+    // The middles of the triangles come before the middles of the other faces; the last is the
+    // center.
     constexpr int edgesEnd = 15;
     e.coordinates = latticeNodes(e.shape, two);
     e.coordinates.insert(
@@ -106,7 +108,7 @@ constexpr FixedType fixedTypes[] = { { 5, 3, ElementShape::Triangle, { 1, 1, 0 }
   { 34, specialTriangle, ElementShape::Triangle, { 2, 2, 0 } },
   { 37, 19, ElementShape::Pyramid, { 2, 2, 2 } } };
 
-/// The polynomials of the types that do not have all of their orders.
+/// The polynomials of the types with incomplete polynomial spaces.
 ElementBasis fixedBasis(const FixedType& type)
 {
   switch (type.vtkType)
@@ -130,7 +132,7 @@ ElementBasis fixedBasis(const FixedType& type)
   }
 }
 
-/// The nodes that are the means of some corners, beside the corners.
+/// The nodes, other than corners, that are means of corners.
 CornerPatterns fixedPatterns(const FixedType& type)
 {
   CornerPatterns middles = type.orders[0] > 1 ? edgePatterns(type.shape) : CornerPatterns();

@@ -11,7 +11,7 @@ namespace
 using LatticeNode = std::array<int, 3>;
 using LatticeNodes = std::vector<LatticeNode>;
 
-/// The nodes strictly between two.
+/// The nodes strictly between two nodes.
 void addEdge(LatticeNodes& nodes, LatticeNode from, LatticeNode to, int order)
 {
   for (int n = 1; n < order; ++n)
@@ -24,7 +24,8 @@ void addEdge(LatticeNodes& nodes, LatticeNode from, LatticeNode to, int order)
   }
 }
 
-/// Vertices, edges and the same of the triangle inside, between three corners `order` steps apart.
+/// Vertices and edges, then recursively the inner triangle, between three corners `order` steps
+/// apart.
 void addTriangle(LatticeNodes& nodes, std::array<LatticeNode, 3> corners, int order)
 {
   for (; order > 0; order -= 3)
@@ -52,7 +53,7 @@ void addTriangle(LatticeNodes& nodes, std::array<LatticeNode, 3> corners, int or
   }
 }
 
-/// What addTriangle() has inside its edges.
+/// The part of addTriangle() inside the edges.
 void addTriangleInside(LatticeNodes& nodes, const std::array<LatticeNode, 3>& corners, int order)
 {
   LatticeNodes all;
@@ -60,7 +61,7 @@ void addTriangleInside(LatticeNodes& nodes, const std::array<LatticeNode, 3>& co
   nodes.insert(nodes.end(), all.begin() + 3 * order, all.end());
 }
 
-/// A tetrahedron whose lowest corner has the coordinates `low`, and the same inside it.
+/// A tetrahedron whose lowest corner has the coordinates `low`, then recursively the inner one.
 void addTetrahedron(LatticeNodes& nodes, int low, int p)
 {
   const std::array<LatticeNode, 4> v = { { { low, low, low }, { low + p, low, low },
@@ -84,7 +85,7 @@ void addTetrahedron(LatticeNodes& nodes, int low, int p)
   addTetrahedron(nodes, low + 1, p - 4);
 }
 
-/// The corners of a square, counter-clockwise.
+/// The corners of a square, counterclockwise.
 constexpr int squareCorners[4][2] = { { 0, 0 }, { 1, 0 }, { 1, 1 }, { 0, 1 } };
 /// Edges of a square in the order of VTK's Lagrange cells, each in the direction of its axis.
 constexpr int squareEdges[4][2] = { { 0, 1 }, { 1, 2 }, { 3, 2 }, { 0, 3 } };
@@ -155,7 +156,7 @@ LatticeNodes hexahedronNodes(const ElementOrders& p)
   return nodes;
 }
 
-/// The nodes inside a triangle of a wedge, unlike those of a triangle row by row.
+/// The nodes inside a triangle of a wedge: row by row, unlike in a triangle.
 void addRowsInside(LatticeNodes& nodes, int p, int k)
 {
   for (int j = 1; j < p; ++j)

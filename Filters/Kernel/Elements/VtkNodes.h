@@ -20,14 +20,14 @@ ElementOrders uniformOrders(ElementShape shape, int p);
 /// The number of nodes of a Lagrange cell.
 int latticeSize(ElementShape shape, const ElementOrders& orders);
 
-/// The reference coordinates of the nodes of a Lagrange cell, not of a pyramid: vertices, then the
+/// The reference coordinates of the nodes of a Lagrange cell (except pyramids): vertices, then the
 /// inner nodes of edges, of faces, of the cell.
 std::vector<Vec3> latticeNodes(ElementShape shape, const ElementOrders& orders);
 
 /// Sets of corners.
 using CornerPatterns = std::vector<std::vector<int>>;
 
-/// The edges of a cell, in the order of the quadratic cells; not of a pyramid.
+/// The edges of a cell, in the order of the quadratic cells; not for pyramids.
 CornerPatterns edgePatterns(ElementShape shape);
 
 /// The corners, then the mean of each set of corners.

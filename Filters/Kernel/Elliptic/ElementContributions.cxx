@@ -15,7 +15,7 @@ namespace
 {
 constexpr Index NotFree = -1;
 
-/// The largest dimension of the cells of all ranks that count.
+/// The largest dimension of the active cells on all ranks.
 int countedDimension(const EllipticSystem& system)
 {
   const Mesh& mesh = system.mesh();
@@ -31,7 +31,7 @@ int countedDimension(const EllipticSystem& system)
   return static_cast<int>(system.numbering().maximum(dimension));
 }
 
-/// What the loop over the cells reads and writes.
+/// The data that the loop over the cells reads and writes.
 struct Work
 {
   const EllipticSystem& System;
@@ -40,7 +40,7 @@ struct Work
   std::vector<Index> FreeIndex; // of each point
   ElementContributions& Result;
   std::vector<double> LowerBound; // of each chunk
-  int Dimension;                  // of the cells that count, on all ranks
+  int Dimension;                  // of the active cells, on all ranks
 
   Work(
     const EllipticSystem& system, const double* vector, int threads, ElementContributions& result)
@@ -58,12 +58,13 @@ struct Work
     }
   }
 
-  /// The cell does not count.
+  /// Whether a cell is inactive.
   bool skipped(Index cell) const
   {
     return this->System.part().skip && this->System.part().skip[cell];
   }
-  /// A cell that does not count is of the dimension of those that do: a copy of one elsewhere.
+  /// Whether an inactive cell has the dimension of the active cells: a copy of a cell on another
+  /// rank.
   bool isCopy(Index cell) const
   {
     const CellType type = cornerType(this->System.mesh().view().cellTypes[cell]);
@@ -71,8 +72,8 @@ struct Work
   }
 };
 
-/// One cell: its largest eigenvalue, that of its part among the free unknowns, its energy in the
-/// eigenvector.
+/// Processes one cell: its largest eigenvalue, the largest eigenvalue of its free part, and its
+/// energy in the eigenvector.
 template <int Nodes, int Dimension, class Element>
 void visitCell(Work& work, const Element& element, Index cell, ElementKind kind, double& lowerBound)
 {
@@ -114,7 +115,7 @@ void visitCell(Work& work, const Element& element, Index cell, ElementKind kind,
   {
     work.Result.share[cell] = energy;
   }
-  // A part has no larger eigenvalue than the whole. Ghosts are whole on another rank.
+  // A part has no larger eigenvalue than the whole. Ghosts are complete on another rank.
   if (!work.skipped(cell) && count > 0 && largest > lowerBound)
   {
     lowerBound = std::max(lowerBound, count == rows ? largest : largestEigenvalue(copy, count));
@@ -145,7 +146,7 @@ void visitCells(Work& work, const Element& element)
     });
 }
 
-/// The eigenvector of the largest eigenvalue; empty if it is not found within the limits.
+/// The eigenvector of the largest eigenvalue; empty if it was not found within the limits.
 std::vector<double> topEigenvector(const EllipticSystem& system, const ConditionOptions& limits)
 {
   const LinearSystem linear = system.linearSystem();
@@ -185,7 +186,7 @@ ElementContributions elementContributions(
   result.largestEigenvalue.assign(cells, std::numeric_limits<double>::quiet_NaN());
   const std::vector<double> vector =
     shares ? topEigenvector(system, limits) : std::vector<double>();
-  // A rank without unknowns has an empty vector, too.
+  // A rank without unknowns also has an empty vector.
   const bool found =
     shares && numbering.maximum(vector.empty() && !system.freePoints().empty() ? 1.0 : 0.0) == 0.0;
   result.share.assign(found ? cells : 0, 0.0);

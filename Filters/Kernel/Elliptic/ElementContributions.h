@@ -17,13 +17,15 @@ struct ElementContributions
 {
   std::vector<double> largestEigenvalue; ///< of each cell's stiffness matrix; NaN for cells skipped
   /**
-   * @brief x_e^T A_e x_e of the eigenvector of the largest eigenvalue, over the whole: the cell's
-   * share of it; sums to 1 over the cells of all ranks. Empty if the eigenvector was not requested,
-   * or not found within the limits.
+   * @brief The share of each cell in the largest eigenvalue: x_e^T A_e x_e for its eigenvector,
+   * relative to the total; sums to 1 over the cells of all ranks. Empty if the eigenvector was not
+   * requested, or not found within the limits.
    */
   std::vector<double> share;
-  double bound = 0.0; ///< the largest eigenvalue is at most this: max over points of the cells' sum
-  double lowerBound = 0; ///< and at least this: the largest of one element matrix's free part
+  /// upper bound of the largest eigenvalue: the maximum over the points of the sum over their cells
+  double bound = 0.0;
+  /// lower bound: the largest eigenvalue of the free part of one element matrix
+  double lowerBound = 0;
 };
 
 /**

@@ -20,8 +20,8 @@ std::string counted(Index n, const CellTopology& t)
 }
 
 /**
- * Edges of quadratic elements have one node between their ends, the same in all elements: else
- * functions would jump there. Merging coincident points joins corners only.
+ * Edges of quadratic elements must have one common middle node in all elements; otherwise functions
+ * would be discontinuous there. Merging coincident points only merges corners.
  */
 void requireOneMiddle(const MeshView& view, const unsigned char* skip)
 {
@@ -55,8 +55,8 @@ void requireOneMiddle(const MeshView& view, const unsigned char* skip)
   if (several > 0)
   {
     throw Error(std::to_string(several) + (several == 1 ? " edge has" : " edges have") +
-      " several nodes between the same ends: the elements are not connected there. Run Clean to "
-      "Grid first, which merges points at one place.");
+      " several nodes between the same ends: the elements are not connected there. Run Clean "
+      "to Grid first, which merges coincident points.");
   }
 }
 }
@@ -66,7 +66,8 @@ void refuseMixedOrders(Index linear, Index quadratic)
 {
   throw Error("The mesh has " + std::to_string(linear) + " linear and " +
     std::to_string(quadratic) +
-    " quadratic elements, which do not fit together: the solution would jump between them. " +
+    " quadratic elements, which do not fit together: the solution would be discontinuous "
+    "between them. " +
     curvingRemedy);
 }
 
@@ -75,7 +76,7 @@ void requireElements(const Mesh& mesh, const unsigned char* skip)
 {
   const MeshView& view = mesh.view();
   const auto counts = [skip](Index cell) { return !(skip && skip[cell]); };
-  // The cells of a wrong type, and which is the first.
+  // Counts the cells of a wrong type and finds the first.
   const auto find = [&](auto wrong, Index& number)
   {
     Index first = -1;
@@ -97,7 +98,7 @@ void requireElements(const Mesh& mesh, const unsigned char* skip)
     find([](int) { return true; }, all);
     if (all > 0 || !skip)
     {
-      throw Error("The mesh has no cells finite elements are made of: triangles, quadrilaterals, "
+      throw Error("The mesh has no cells that finite elements support: triangles, quadrilaterals, "
                   "tetrahedra, hexahedra, wedges or pyramids.");
     }
   }
@@ -130,7 +131,8 @@ void requireElements(const Mesh& mesh, const unsigned char* skip)
     throw Error(std::to_string(higherOrder) + " cells are of higher order (the first is cell " +
       std::to_string(first) + ", VTK cell type " +
       std::to_string(static_cast<int>(view.cellTypes[first])) +
-      "). The curved elements here are triangles and tetrahedra of order 2. " + curvingRemedy);
+      "). Only triangles and tetrahedra of order 2 are supported as curved elements. " +
+      curvingRemedy);
   }
   for (const CellBlock& block : mesh.blocks())
   {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ElementMatrices.h
- * @brief Stiffness matrices of single elements, of the diffusion operator and of linear elasticity.
- * Internal: not installed.
+ * @brief Element stiffness matrices of the diffusion operator and of linear elasticity. Internal:
+ * not installed.
  *
- * All are exactly symmetric: of two entries that mirror each other one is computed and the other
+ * All are exactly symmetric: only one of each pair of symmetric entries is computed and then
  * copied.
  */
 #ifndef tautline_ElementMatrices_h
@@ -17,14 +17,14 @@
 namespace tautline
 {
 /**
- * @brief Throws Error if a mesh has cells there are no elements for, or elements that do not fit
- * together: linear and quadratic ones, or edges with several nodes between their ends. Which, how
- * many, and what to do.
- * @param skip one flag per cell: it does not count; or null
+ * @brief Throws Error if a mesh has unsupported cells or elements that do not fit together: both
+ * linear and quadratic elements, or edges with several nodes between their ends. The message states
+ * which cells, how many, and a remedy.
+ * @param skip one flag per cell: nonzero to ignore it; or null
  */
 void requireElements(const Mesh& mesh, const unsigned char* skip = nullptr);
 
-/// Throws Error that names the remedy: a mesh with linear and quadratic elements.
+/// Throws Error, with a remedy, for a mesh with both linear and quadratic elements.
 [[noreturn]] void refuseMixedOrders(Index linear, Index quadratic);
 
 /// The product C v.
@@ -34,8 +34,8 @@ inline Vec3 applyTensor(const SymmetricTensor& c, const Vec3& v)
     c[5] * v[0] + c[4] * v[1] + c[2] * v[2] };
 }
 
-/// Whether a tensor is a number times the identity: then only edges and faces matter, not where
-/// they point.
+/// Whether a tensor is a number times the identity: then only the sizes of edges and faces matter,
+/// not their directions.
 inline bool isIsotropic(const SymmetricTensor& c)
 {
   return c[0] == c[1] && c[1] == c[2] && c[3] == 0 && c[4] == 0 && c[5] == 0;
@@ -95,9 +95,9 @@ public:
 
 private:
   /**
-   * Closed forms. With h_i the edge (face) opposite node i, turned to its inner normal and as long
-   * as it is (twice its area), grad phi_i = h_i / det J. In a triangle and with C = c I the turning
-   * does not matter.
+   * Closed forms. With h_i the edge (face) opposite node i, rotated to its inner normal, with its
+   * length (twice its area) as magnitude, grad phi_i = h_i / det J. In a triangle with C = c I, the
+   * rotation does not matter.
    */
   template <int Nodes>
   void simplex(const SymmetricTensor& c, const Vec3* p, double* k) const
@@ -234,7 +234,7 @@ public:
   {
     if constexpr (CellDimension != Dim)
     {
-      return; // such cells are refused
+      return; // such cells are rejected
     }
     constexpr int rows = Nodes * Dim;
     std::fill(k, k + rows * rows, 0.0);

@@ -11,7 +11,7 @@ namespace
 std::vector<std::array<double, 2>> gaussRule(int n)
 {
   std::vector<std::array<double, 2>> rule(n);
-  constexpr int iterations = 50; // from this start a handful suffice
+  constexpr int iterations = 50; // a few suffice from this start
   for (int i = 0; i < n; ++i)
   {
     double x = std::cos(Pi * (i + 0.75) / (n + 0.5)), slope = 1;
@@ -32,7 +32,8 @@ std::vector<std::array<double, 2>> gaussRule(int n)
   return rule;
 }
 
-/// Product of (1 - r or r) over the directions, the bits of a corner in the order of `corners`.
+/// The product of (1 - r or r) over the directions; the bits of a corner are in the order of
+/// `corners`.
 void multilinear(
   const int (*corners)[3], int nodes, int dimension, const double* r, ReferencePoint& at)
 {
@@ -81,8 +82,8 @@ void quadratic(int dimension, const std::array<double, 4>& lambda, ReferencePoin
   }
 }
 
-/// Adds the node at the center of a triangle, whose function 27 l m n vanishes on the boundary;
-/// takes from the other functions what they have there: -1/9 and 4/9.
+/// Adds the node at the center of a triangle, whose function 27 l m n vanishes on the boundary, and
+/// subtracts from the other functions their values there: -1/9 and 4/9.
 void addBubble(const std::array<double, 4>& l, ReferencePoint& at)
 {
   const double bubble = l[0] * l[1] * l[2];
@@ -108,8 +109,8 @@ void quadraticSimplex(ElementKind kind, double r, double s, double t, ReferenceP
   }
 }
 
-/// Shape functions at a place of the unit cube, which is collapsed to the cell; the weight gets the
-/// factor of that.
+/// Shape functions at a point of the unit cube, which is collapsed to the cell; the weight includes
+/// the factor of the collapse.
 void evaluateShapes(ElementKind kind, const double* u, ReferencePoint& at)
 {
   switch (kind)
@@ -169,8 +170,8 @@ void evaluateShapes(ElementKind kind, const double* u, ReferencePoint& at)
   }
 }
 
-/// Points of a rule of a simplex by barycentric coordinates: one of them differs (or, of pairs on a
-/// tetrahedron, two), in all places.
+/// Points of a simplex rule in barycentric coordinates: one coordinate differs (or two, for pairs
+/// on a tetrahedron), in all positions.
 class SimplexRule
 {
 public:
@@ -183,7 +184,7 @@ public:
   /// @param weight of a reference cell of size 1
   void addCenter(double weight) { this->add(weight, { 1, 1, 1, 1 }); }
 
-  /// The coordinates are `value`, but for one.
+  /// All coordinates except one are `value`.
   void addCorners(double weight, double value)
   {
     for (int k = 0; k <= this->Dimension; ++k)
@@ -194,7 +195,7 @@ public:
     }
   }
 
-  /// Two of four coordinates are `value`, the others 1/2 less that.
+  /// Two of four coordinates are `value`, the others are 1/2 - `value`.
   void addEdges(double weight, double value)
   {
     for (const auto& edge : simplexEdges)

@@ -27,7 +27,7 @@ enum class ElementKind : signed char
   Wedge,
   Pyramid,
   QuadraticTriangle,
-  BubbleTriangle, ///< of 7 nodes: the quadratic one with a cubic bubble
+  BubbleTriangle, ///< with 7 nodes: quadratic with a cubic bubble
   QuadraticTetrahedron
 };
 
@@ -37,7 +37,7 @@ constexpr int MaxElementNodes = 10;
 /**
  * @brief The element of a VTK cell: linear cells (5, 9, 10, 12, 13, 14), quadratic triangles (22;
  * 34, with a node at the center) and tetrahedra (24), and Lagrange triangles (69) and tetrahedra
- * (71) of the same nodes. None for all else.
+ * (71) with the same numbers of nodes. None for all other cells.
  * @param nodes of the cell
  */
 ElementKind elementKind(int vtkType, Index nodes);
@@ -52,11 +52,11 @@ inline bool isQuadratic(ElementKind kind)
   return kind > ElementKind::Pyramid;
 }
 
-/// Nodes of an element; 0 of None.
+/// The number of nodes of an element; 0 for None.
 int nodesOf(ElementKind kind);
 
-/// A place in the reference cell: weight, shape functions and their derivatives by reference
-/// coordinates.
+/// A quadrature point in the reference cell: weight, shape functions and their derivatives with
+/// respect to reference coordinates.
 struct ReferencePoint
 {
   double weight;
@@ -65,23 +65,23 @@ struct ReferencePoint
 };
 
 /**
- * @brief Quadrature on the reference cell: Gauss points, so many per direction. Simplices, wedges
+ * @brief Quadrature on the reference cell: Gauss points, this many per direction. Simplices, wedges
  * and pyramids are cubes with collapsed sides, so that n points are exact to degree 2 n - 2 on
  * triangles and 2 n - 3 on tetrahedra and pyramids. The weights of simplices sum to 1/2 and 1/6.
  */
 std::vector<ReferencePoint> referenceRule(ElementKind kind, int pointsPerDirection);
 
 /**
- * @brief Where the matrix of an element is integrated: simplices of constant gradients at one
- * place, other linear cells at two Gauss points per direction. Quadratic simplices have rules of
- * positive weights that are exact to degree 5, which is enough for order 3 in L2 on curved
- * elements (P. G. Ciarlet, The Finite Element Method for Elliptic Problems, 1978, section 4.4):
- * 7 points (J. Radon 1948) and 14 (N. J. Walkington, "Quadrature on simplices of arbitrary
- * dimension", 2000). With the bubble the degree is 6.
+ * @brief The quadrature points for the matrix of an element: one point for simplices with constant
+ * gradients, two Gauss points per direction for other linear cells. Quadratic simplices have rules
+ * of positive weights that are exact to degree 5, which is enough for order 3 in L2 on curved
+ * elements (P. G. Ciarlet, The Finite Element Method for Elliptic Problems, 1978, section 4.4): 7
+ * points (J. Radon 1948) and 14 (N. J. Walkington, "Quadrature on simplices of arbitrary
+ * dimension", 2000). With the bubble, the degree is 6.
  */
 std::vector<ReferencePoint> elementRule(ElementKind kind);
 
-/// The place at which the derivatives of a solution are given: of simplices the center.
+/// The point at which the derivatives of a solution are evaluated: for simplices, the center.
 std::vector<ReferencePoint> centerRule(ElementKind kind);
 
 /// One rule for each kind of element.
@@ -98,8 +98,8 @@ ElementRules elementRules(const MakeRule& makeRule)
   return rules;
 }
 
-/// Gradients of the shape functions at one place of an element, and what the place counts in an
-/// integral.
+/// The gradients of the shape functions at one point of an element, and the weight of the point in
+/// an integral.
 template <int Nodes>
 struct ElementSample
 {
@@ -108,19 +108,19 @@ struct ElementSample
   std::array<double, Nodes> gradient[3]; ///< [x, y, z][node]
 };
 
-/// A place whose |det J| is at most so much of the product of the lengths of J's columns counts as
-/// flat.
+/// A point is flat if |det J| is at most this fraction of the product of the lengths of the columns
+/// of J.
 constexpr double flatTolerance = 1e-13; // Mesh::degenerateTolerance()
 
-/// False for what overflows or is not a number: that goes on, so that it is found.
+/// False for overflow and NaN, which are propagated so that they are detected.
 inline bool isFlat(double det, double lengths)
 {
   return det <= flatTolerance * lengths && lengths <= std::numeric_limits<double>::max();
 }
 
 /**
- * @brief Fills a sample: a cell of dimension 3 in space, or one of dimension 2 anywhere in space,
- * whose gradients are tangential. A place where the Jacobian vanishes gets weight 0 and gradients
+ * @brief Fills a sample: for a cell of dimension 3, or a cell of dimension 2 anywhere in space,
+ * whose gradients are tangential. A point where the Jacobian vanishes gets weight 0 and gradients
  * 0.
  */
 template <int Nodes, int CellDimension>
@@ -139,7 +139,7 @@ inline void sampleElement(
     }
   }
   sample.value = reference.value.data();
-  // Rows of the inverse, up to the determinant; in two dimensions of the pseudo-inverse.
+  // The rows of the inverse (in two dimensions: the pseudo-inverse), up to the determinant.
   Vec3 row[3] = {};
   double det = 0, lengths = norm(column[0]) * norm(column[1]);
   if (CellDimension == 3)

@@ -41,7 +41,7 @@ bool isElliptic(const Mesh& mesh, const SymmetricTensor& c)
     dot(e[0], applyTensor(c, e[1])), 0, 0);
 }
 
-/// Fixed points of a part that are not all in one place (line), as far as they are needed.
+/// Fixed points of a part that do not all coincide (or lie on one line), as far as needed.
 struct Anchors
 {
   int count = 0;
@@ -49,7 +49,7 @@ struct Anchors
 
   void add(const MeshView& view, Index point)
   {
-    constexpr double tolerance = 1e-10; // sine of the angle at which three points are in line
+    constexpr double tolerance = 1e-10; // sine of the angle below which three points are collinear
     if (this->count == 0)
     {
       this->first = point;
@@ -86,8 +86,8 @@ void EllipticChecks::throwTogether(const std::string& message) const
   const bool anywhere = this->Numbering.maximum(message.empty() ? 0.0 : 1.0) > 0;
   if (anywhere)
   {
-    throw Error(message.empty() ? "Another rank cannot take its part of the mesh; see its message."
-                                : message);
+    throw Error(
+      message.empty() ? "Another rank rejected its part of the mesh; see its message." : message);
   }
 }
 
@@ -151,7 +151,7 @@ void EllipticChecks::requireValidElements() const
   }
   if (valid.count + degenerate.count + inverted.count + nonFinite.count == 0)
   {
-    throw Error("The mesh has no cells finite elements are made of: triangles, quadrilaterals, "
+    throw Error("The mesh has no cells that finite elements support: triangles, quadrilaterals, "
                 "tetrahedra, hexahedra, wedges or pyramids.");
   }
   Index linear = 0, quadratic = 0;
@@ -165,14 +165,14 @@ void EllipticChecks::requireValidElements() const
   quadratic = this->Numbering.sum(quadratic);
   if (linear > 0 && quadratic > 0)
   {
-    refuseMixedOrders(linear, quadratic); // of different ranks
+    refuseMixedOrders(linear, quadratic); // on different ranks
   }
   if (nonFinite.count > 0)
   {
     throw Error(elements(nonFinite.count, nonFinite.first) +
       " have coordinates that are not finite. Check the points array.");
   }
-  // Of the cells of all ranks, so that all ranks refuse.
+  // The range over the cells of all ranks, so that all ranks throw.
   const CoordinateRange range = coordinateRange(this->Input.view());
   if (this->Numbering.sum(Index(unitOfExtent(range.extent) != 1)) > 0)
   {
@@ -186,13 +186,13 @@ void EllipticChecks::requireValidElements() const
     throw Error(elements(degenerate.count, degenerate.first) +
       " degenerate: no area or volume. Run Untangle Mesh, or remove them.");
   }
-  // Reversed throughout is fine.
+  // A fully reversed mesh is accepted.
   const Kind& odd = inverted.count <= valid.count ? inverted : valid;
   if (inverted.count > 0 && valid.count > 0)
   {
     throw Error(elements(odd.count, odd.first) +
-      " inverted against the rest: a solution would mean nothing. Run Untangle Mesh first, or "
-      "orient the cells alike if they are only listed in different senses.");
+      " inverted against the rest: a solution would be meaningless. Run Untangle Mesh first, "
+      "or orient the cells consistently if only their point order differs.");
   }
 }
 
@@ -257,7 +257,7 @@ void EllipticChecks::requireData(
   }
 }
 
-/// Of a planar body, whose points only move in its plane.
+/// Checks vectors of a planar body, whose points only move in its plane.
 void EllipticChecks::requireInPlane(
   const double* vectors, const std::vector<unsigned char>& where, const char* name) const
 {
@@ -265,7 +265,7 @@ void EllipticChecks::requireInPlane(
   {
     return;
   }
-  constexpr double tolerance = 1e-6; // as flat as a planar mesh is
+  constexpr double tolerance = 1e-6; // the tolerance of a planar mesh
   double most = 0, out = 0;
   for (std::size_t i = 0; i < where.size(); ++i)
   {
@@ -279,14 +279,14 @@ void EllipticChecks::requireInPlane(
   if (out > tolerance * most)
   {
     throw Error(std::string(name) +
-      " points out of the plane of the mesh, where a planar body does not move. Give it in that "
-      "plane.");
+      " points out of the plane of the mesh, in which a planar body moves. Use a vector in "
+      "that plane.");
   }
 }
 
 //------------------------------------------------------------------------------
-/// Whatever holds a part on one rank holds it on all ranks that share points of it: repeats until
-/// nothing changes anywhere.
+/// A part held on one rank is held on all ranks that share its points: repeats until nothing
+/// changes on any rank.
 void EllipticChecks::spreadHeld(UnionFind& parts, std::vector<unsigned char>& held) const
 {
   const auto points = static_cast<Index>(held.size());
@@ -319,7 +319,7 @@ void EllipticChecks::requireFixedParts(
     return;
   }
   const MeshView& view = this->Input.view();
-  // Points that cells connect are one part.
+  // Points connected by cells form one part.
   UnionFind parts(view.numberOfPoints);
   for (Index cell = 0; cell < view.numberOfCells; ++cell)
   {
@@ -328,7 +328,7 @@ void EllipticChecks::requireFixedParts(
       parts.join(view.connectivity[view.offsets[cell]], view.connectivity[k]);
     }
   }
-  // A body is held by as many points as prevent a rigid motion: 1, 2 or 3. On several ranks the
+  // A body needs as many fixed points as prevent a rigid motion: 1, 2 or 3. On several ranks the
   // fixed points of a part may be spread, so that only one is required.
   const bool oneRank = this->Numbering.ranks() == 1;
   const int needed = !elastic || !oneRank          ? 1
@@ -348,7 +348,7 @@ void EllipticChecks::requireFixedParts(
     held[point] = anchors[parts.find(point)].count >= needed;
   }
   this->spreadHeld(parts, held);
-  // Parts that are held nowhere, each counted once.
+  // Parts without sufficient fixed points, each counted once.
   Index loose = 0, first = -1;
   std::vector<unsigned char> counted(view.numberOfPoints, 0);
   for (Index point = 0; point < view.numberOfPoints; ++point)
@@ -365,7 +365,7 @@ void EllipticChecks::requireFixedParts(
   {
     message = std::to_string(loose) + (loose == 1 ? " part" : " parts") +
       " of the mesh (the first holds point " + std::to_string(first) + ")";
-    const std::string number = needed == 3 ? "three points, not in one line," : "two points";
+    const std::string number = needed == 3 ? "three noncollinear points" : "two points";
     message += elastic
       ? " can move as a whole: too few of its points are fixed, and the matrix is singular. Fix at "
         "least " +
@@ -377,11 +377,11 @@ void EllipticChecks::requireFixedParts(
 }
 
 //------------------------------------------------------------------------------
-/// A mesh is planar by its corners; the other nodes of quadratic elements have to lie in the plane,
-/// too.
+/// Planarity is determined from the corners; the other nodes of quadratic elements must also lie in
+/// the plane.
 void EllipticChecks::requireFlatElements() const
 {
-  constexpr double tolerance = 1e-6; // as flat as a planar mesh is
+  constexpr double tolerance = 1e-6; // the tolerance of a planar mesh
   const MeshView& view = this->Input.view();
   double low = std::numeric_limits<double>::max(), high = -low;
   for (Index cell = 0; this->Input.higherOrderCells() > 0 && cell < view.numberOfCells; ++cell)
@@ -396,7 +396,7 @@ void EllipticChecks::requireFlatElements() const
   if (high - low > tolerance * coordinateRange(view).extent)
   {
     throw Error(
-      "The corners of the elements lie in a plane, and their other nodes do not: this is a "
+      "The corners of the elements lie in a plane, but their other nodes do not: this is a "
       "surface in space, a shell. Linear elasticity needs a planar mesh or a volume mesh.");
   }
 }
@@ -415,7 +415,7 @@ int EllipticChecks::elasticUnknowns() const
       }
     });
   const int all = static_cast<int>(this->Numbering.maximum(own));
-  // Parts that are each planar must have one plane, and the same axes in it.
+  // Parts that are each planar must share one plane and its axes.
   constexpr double tolerance = 1e-6, nothing = -10;
   double apart = 0;
   for (int k = 0; all == 2 && k < 6; ++k)
@@ -426,9 +426,9 @@ int EllipticChecks::elasticUnknowns() const
     apart = std::max(apart, most - least);
   }
   this->throwTogether((own > 0 && own != all) || apart > tolerance
-      ? "The parts of the mesh on the ranks are not in one plane: linear elasticity needs a planar "
-        "mesh or a volume mesh, and this is a surface in space. A planar mesh in an oblique plane: "
-        "turn it into the xy plane first."
+      ? "The parts of the mesh on the ranks are not in one plane: linear elasticity needs a "
+        "planar mesh or a volume mesh, and this is a surface in space. Rotate a planar mesh in "
+        "an oblique plane into the xy plane first."
       : "");
   return all;
 }

@@ -23,7 +23,7 @@ public:
   EllipticChecks(const Mesh& mesh, const EllipticProblem& problem, const MeshPart& part,
     const PointNumbering& numbering, int threads);
 
-  /// Does work on each rank; where it throws Error on one, all throw.
+  /// Does work on each rank; if it throws Error on one rank, all throw.
   template <class Work>
   void everywhere(const Work& work) const
   {
@@ -45,10 +45,10 @@ public:
   std::vector<unsigned char> usedPoints() const;
   void requireData(
     const std::vector<unsigned char>& used, const std::vector<unsigned char>& fixed) const;
-  /// Every part of the mesh that has a free point has enough fixed ones.
+  /// Checks that every part of the mesh with a free point has enough fixed points.
   void requireFixedParts(
     const std::vector<unsigned char>& used, const std::vector<unsigned char>& fixed) const;
-  /// Unknowns per point of elasticity; a rank without cells takes the number of the others.
+  /// Unknowns per point of elasticity; a rank without cells uses the number of the other ranks.
   int elasticUnknowns() const;
 
 private:

@@ -7,8 +7,8 @@ namespace tautline
 {
 namespace
 {
-/// The stress (2.4) of a displacement gradient; a planar body's is that of its plane, and of what
-/// holds it across.
+/// The stress (2.4) of a displacement gradient; for a planar body, according to plane strain or
+/// plane stress.
 SymmetricTensor stressOf(
   const Mesh& mesh, const ElasticOperator& pde, double factor, const std::array<Vec3, 3>& gradient)
 {
@@ -21,7 +21,7 @@ SymmetricTensor stressOf(
   {
     for (int j = 0; j < 3; ++j)
     {
-      // Pressure acts in the plane only when nothing holds the body across it.
+      // The pressure acts only in the plane if the body is free in the normal direction.
       const bool free = planar && pde.plane == PlaneState::Stress;
       const double identity = (i == j) - (free ? mesh.normal()[i] * mesh.normal()[j] : 0.0);
       stress[i][j] = lambda * divergence * identity + mu * (gradient[i][j] + gradient[j][i]);

@@ -23,7 +23,7 @@ struct EllipticDomain
   int threads;
 };
 
-/// Values and gradients of a solution at a place of a cell: gradient[component] is a vector.
+/// Values and gradients of a solution at a point of a cell: gradient[component] is a vector.
 template <int Nodes>
 void interpolate(const ElementSample<Nodes>& sample, const EllipticSolution& solution,
   const Index* node, Vec3& value, std::array<Vec3, 3>& gradient)
@@ -42,7 +42,7 @@ void interpolate(const ElementSample<Nodes>& sample, const EllipticSolution& sol
   }
 }
 
-/// Calls work(cell, nodes, points, sample) at the places of the rules in every cell that is not
+/// Calls work(cell, nodes, points, sample) at the quadrature points of every cell that is not
 /// skipped, chunk by chunk.
 template <class Work>
 void forEachSample(
@@ -52,7 +52,7 @@ void forEachSample(
   const bool volume = domain.mesh.dimension() == Dimension::Volume;
   for (const CellBlock& block : domain.mesh.blocks())
   {
-    // What is skipped is either a ghost or a face of a volume.
+    // A skipped cell is either a ghost or a face of a volume.
     const bool face = volume && topology(block.type).dimension == 2;
     const unsigned char* skip = ghosts && !face ? nullptr : domain.part.skip;
     const auto visitCell = [&](Index cell, ElementKind kind, auto nodesOfCell, auto dimension)

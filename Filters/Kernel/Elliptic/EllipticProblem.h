@@ -24,20 +24,20 @@ enum class Pde : int
 struct EllipticProblem
 {
   Pde pde = Pde::Poisson;
-  /// Of Elliptic; Poisson ignores it. C must be positive definite in the plane of a planar mesh, in
-  /// space otherwise.
+  /// For Elliptic; Poisson ignores it. C must be positive definite in the plane of a planar mesh,
+  /// in space otherwise.
   DiffusionOperator diffusion;
   ElasticOperator elastic; ///< Elasticity
-  /// f, constant: the first component, or a vector in space for elasticity (of a planar mesh in its
-  /// plane).
+  /// f, constant: the first component, or a vector in space for elasticity (for a planar mesh, in
+  /// its plane).
   Vec3 source = { 1, 0, 0 };
-  /// f at the points instead, 1 (elasticity: 3) per point, linear in between; or null.
+  /// f at the points instead, 1 (elasticity: 3) per point, interpolated linearly; or null.
   const double* sources = nullptr;
   /// One flag per point, nonzero = its values are given; null: the boundary of the mesh (over all
   /// ranks).
   const unsigned char* fixed = nullptr;
-  /// Given values at the points, 1 (elasticity: 3) per point; null: 0. Only those of fixed points
-  /// are read.
+  /// Given values at the points, 1 (elasticity: 3) per point; null: 0. Only the values of fixed
+  /// points are read.
   const double* fixedValues = nullptr;
 };
 

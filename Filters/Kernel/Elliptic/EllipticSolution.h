@@ -16,8 +16,8 @@ struct EllipticSolution
   int components = 1; ///< 1, or 3 for elasticity
   /// Components per point; NaN at points outside all cells, which have no equation.
   std::vector<double> values;
-  /// Per cell, at its centre: gradient (3), or stress of elasticity (6, as SymmetricTensor). Also
-  /// of ghosts; NaN for faces beside volumes and where a value is NaN.
+  /// Per cell, at its center: the gradient (3), or the stress for elasticity (6, as
+  /// SymmetricTensor). Also for ghosts; NaN for faces of volumes and where a value is NaN.
   std::vector<double> gradients;
   LinearSolution linear;
 };

@@ -14,7 +14,7 @@ namespace tautline
 {
 namespace
 {
-/// What is known of a problem that was checked.
+/// The results of checking a problem.
 struct CheckedProblem
 {
   std::vector<unsigned char> used, fixed; // per point: in cells, and fixed, on any rank
@@ -58,7 +58,7 @@ struct EllipticSystem::Implementation
   void assemble();
   void reduce(const SparseMatrix& whole, const std::vector<double>& load);
   std::vector<double> source() const;
-  /// Component k of what is given at a point: of elasticity in the plane along the frame.
+  /// Component k of a vector given at a point; for planar elasticity, along the axes of the frame.
   double component(const Vec3& v, int k) const;
   double given(Index point, int k) const;
 
@@ -198,7 +198,8 @@ void EllipticSystem::Implementation::assemble()
   this->AssembleSeconds = time.seconds();
 }
 
-/// Keeps rows and columns of the free points; what is given elsewhere goes to the right-hand side.
+/// Keeps the rows and columns of the free points; given values at other points go to the right-hand
+/// side.
 void EllipticSystem::Implementation::reduce(
   const SparseMatrix& whole, const std::vector<double>& load)
 {
@@ -206,7 +207,7 @@ void EllipticSystem::Implementation::reduce(
   const Index freePoints = static_cast<Index>(this->FreePoints.size());
   SparseMatrix& matrix = this->Matrix;
   matrix.size = d * freePoints;
-  // First the lengths of the rows, then their entries.
+  // First count the entries of the rows, then fill them.
   matrix.offsets.assign(matrix.size + 1, 0);
   const auto rowOf = [&](Index i) { return d * this->FreePoints[i / d] + i % d; };
   forEachChunk(matrix.size, this->Threads,
@@ -244,6 +245,7 @@ void EllipticSystem::Implementation::reduce(
           }
           else
           {
+            // Columns of given values move to the right-hand side.
             sum -= whole.values[k] * this->given(point, component);
           }
         }

@@ -9,7 +9,7 @@ namespace tautline
 {
 namespace
 {
-/// A unit normal of the plane in which the gradients of the shape functions of a cell lie.
+/// A unit normal of the plane that contains the gradients of the shape functions of a cell.
 template <int Nodes>
 Vec3 normalOf(const ElementSample<Nodes>& sample)
 {
@@ -37,7 +37,7 @@ std::array<double, 2> errorNorms(const EllipticSystem& system, const EllipticSol
   constexpr int oneThread = 1; // calls exact()
   const EllipticDomain domain = { system.mesh(), system.problem(), system.part(), oneThread };
   const bool surface = system.mesh().dimension() != Dimension::Volume;
-  // One sum per cell, so that their order is that of the cells.
+  // One sum per cell, so that the sums are added in the order of the cells.
   std::vector<std::array<double, 2>> squares(system.mesh().view().numberOfCells);
   forEachSample(domain, elementRules(rule), false,
     [&](Index cell, const Index* node, const Vec3* p, const auto& sample)

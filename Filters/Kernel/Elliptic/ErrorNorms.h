@@ -15,11 +15,11 @@
 namespace tautline
 {
 /**
- * @brief Norms of the difference between a solution and a known function, by four Gauss points in
- * each direction, of quadratic elements six. Collective.
- * @param exact writes `components` values and their gradients (3 per component; on a surface their
- * normal parts do not count) at a place. It is called by this thread alone.
- * @return { L2 norm of the error, L2 norm of the gradient's error }
+ * @brief Norms of the difference between a solution and a known function, with four Gauss points in
+ * each direction, or six for quadratic elements. Collective.
+ * @param exact writes `components` values and their gradients (3 per component; on a surface, their
+ * normal parts are ignored) at a point. It is called on this thread only.
+ * @return { L2 norm of the error, L2 norm of the error of the gradient }
  */
 TAUTLINE_SOLVERS_EXPORT std::array<double, 2> errorNorms(const EllipticSystem& system,
   const EllipticSolution& solution,

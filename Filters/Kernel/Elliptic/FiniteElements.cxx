@@ -15,10 +15,10 @@ namespace
 {
 constexpr int linearPlaceBits = 3, quadraticPlaceBits = 4;
 static_assert(1 << linearPlaceBits >= MaxNodes && 1 << quadraticPlaceBits >= MaxElementNodes,
-  "a place in a cell takes so many bits");
+  "a position in a cell takes this many bits");
 constexpr Index widestSlot = std::numeric_limits<std::uint16_t>::max();
 
-/// The lowest of the cells that several threads report.
+/// The lowest cell number reported by several threads.
 class FirstCell
 {
 public:
@@ -60,7 +60,7 @@ AssemblyPattern::AssemblyPattern(const Mesh& mesh, const AssemblyOptions& option
   {
     if (!isElement(mesh, block.type))
     {
-      continue; // all of them are skipped
+      continue; // all cells are skipped
     }
     if (mesh.higherOrderCells() == 0)
     {
@@ -90,8 +90,8 @@ void AssemblyPattern::findUses(const unsigned char* skip)
 {
   const MeshView& view = this->Input->view();
   const Index points = view.numberOfPoints;
-  // Each part of the cells is counted separately and then written behind the parts before it: so
-  // the uses of a point are in the order of the cells, whatever the number of parts.
+  // Each part of the cells is counted separately and then written after the previous parts, so that
+  // the uses of a point are in the order of the cells for any number of parts.
   constexpr Index maxParts = 8; // each takes four bytes per point
   const Index parts = std::max<Index>(1,
     std::min({ maxParts, static_cast<Index>(resolveThreads(this->Threads)),
@@ -116,7 +116,7 @@ void AssemblyPattern::findUses(const unsigned char* skip)
       next[part].assign(points, 0);
       forEachUse(part, [&](Index node, Index) { ++next[part][node]; });
     });
-  // Turns the counts of the parts into positions behind those of the parts before.
+  // Convert the counts of the parts to positions after the previous parts.
   this->UseOffsets.assign(points + 1, 0);
   for (Index point = 0; point < points; ++point)
   {
@@ -148,8 +148,8 @@ void AssemblyPattern::findColumns()
   this->Offsets.assign(points + 1, 0);
   this->Slots.resize(this->Uses.size() * this->Stride);
   std::vector<std::vector<std::int32_t>> chunks(numberOfChunks(points));
-  // Each thread marks the points it meets with their place in the row at hand, and clears the marks
-  // after each row.
+  // Each thread marks the points it visits with their position in the current row, and clears the
+  // marks after each row.
   struct Marks
   {
     std::vector<std::int32_t> place, row;
@@ -177,7 +177,7 @@ void AssemblyPattern::findColumns()
             }
           }
         };
-        // Each neighbour once, in increasing order.
+        // Add each neighbor once, in increasing order.
         forEachNode(
           [&](Index, std::int32_t node)
           {
@@ -202,7 +202,7 @@ void AssemblyPattern::findColumns()
         this->Offsets[point + 1] = static_cast<Index>(row.size());
       }
     });
-  // The rows of all chunks one after the other.
+  // Concatenate the rows of all chunks.
   std::partial_sum(this->Offsets.begin(), this->Offsets.end(), this->Offsets.begin());
   this->Columns.resize(this->Offsets.back());
   forEachChunk(points, this->Threads,
@@ -293,7 +293,7 @@ void AssemblyPattern::computeBatch(const Element& element, const MeshView& view,
 }
 
 //------------------------------------------------------------------------------
-/// Adds the rows that one use has in an element matrix k to those of its point.
+/// Adds the rows of one use in an element matrix k to the rows of its point.
 template <int Components>
 void AssemblyPattern::addUse(
   Index use, Index firstColumn, Index width, const double* k, double* row) const
@@ -321,9 +321,9 @@ void AssemblyPattern::addUse(
 
 //------------------------------------------------------------------------------
 /**
- * Cells are taken in batches: first the matrices of a batch, by cell; then every row adds what the
- * batch has for it, in increasing order of cells. So no two threads write to one row, sums have one
- * order, and memory stays small.
+ * Cells are processed in batches: first the matrices of a batch are computed by cell; then every
+ * row adds its entries of the batch, in increasing order of cells. Thus, no two threads write to
+ * one row, the order of sums is fixed, and memory use stays small.
  */
 template <class Element>
 void AssemblyPattern::gather(
@@ -334,8 +334,8 @@ void AssemblyPattern::gather(
   MeshView view = this->Input->view();
   view.points = points ? points : view.points;
   const Index entries = components * components * this->Stride * this->Stride;
-  // The buffer takes no more than the matrix itself, unless that is small. Few batches, since each
-  // visits all rows.
+  // The buffer is not larger than the matrix itself, unless that is small. The number of batches is
+  // small, since each visits all rows.
   constexpr Index smallest = 1 << 15;
   const Index batch = std::min(
     view.numberOfCells, std::max(smallest, static_cast<Index>(matrix.values.size()) / entries));
@@ -409,8 +409,7 @@ void AssemblyPattern::assemble(
   {
     throw Error("Poisson's ratio must be between -1 and " +
       std::string(limit < 1
-          ? "0.5: a body of 0.5 does not change its volume, which linear elements "
-            "cannot follow."
+          ? "0.5: a body with 0.5 is incompressible, which linear elements cannot represent."
           : "1."));
   }
   if (pde.stiffening)

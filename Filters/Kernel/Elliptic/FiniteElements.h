@@ -6,12 +6,11 @@
  * triangles (VTK's types 22, 34 and 69) and tetrahedra (24, 71), whose edges and faces may be
  * curved: isoparametric elements.
  *
- * Matrices are those of all points of the mesh, before any boundary condition: a point outside all
- * cells has an empty row. They come out the same, bitwise, for any number of threads, and exactly
- * symmetric.
+ * Matrices cover all points of the mesh, before any boundary condition: a point outside all cells
+ * has an empty row. They are bitwise identical for any number of threads, and exactly symmetric.
  *
- * Example: the matrix of -laplace u, and then that of -div(C grad u) without computing the pattern
- * again.
+ * Example: the matrix of -laplace u, and then the matrix of -div(C grad u) without computing the
+ * pattern again.
  *
  *     tautline::AssemblyPattern pattern(mesh);
  *     tautline::SparseMatrix matrix = pattern.assemble(tautline::DiffusionOperator());
@@ -32,43 +31,43 @@ namespace tautline
 /// Options of an assembly; shared by all functions below.
 struct AssemblyOptions
 {
-  const unsigned char* skip = nullptr; ///< one flag per cell, nonzero = leave out (ghosts); or null
+  const unsigned char* skip = nullptr; ///< one flag per cell, nonzero = ignore (ghosts); or null
   int threads = 0;                     ///< 0: all cores
 };
 
 /**
  * @class tautline::AssemblyPattern
- * @brief The sparsity pattern of the matrices of a mesh: found once, used for every assembly on
- * that mesh.
+ * @brief The sparsity pattern of the matrices of a mesh: computed once and used for every assembly
+ * on that mesh.
  *
- * Cells of other types are refused, and linear elements beside quadratic ones. Where the Jacobian
- * of an element vanishes (Mesh::degenerateTolerance()) it contributes nothing; inverted elements
- * contribute by its absolute value. Check with Mesh::classifyCells(), of quadratic ones with
- * certifyCurvedCells(), first where that matters.
+ * Cells of other types and mixtures of linear and quadratic elements are rejected. Elements with a
+ * vanishing Jacobian (Mesh::degenerateTolerance()) contribute nothing; inverted elements contribute
+ * with its absolute value. If this matters, check first with Mesh::classifyCells() or, for
+ * quadratic cells, certifyCurvedCells().
  */
 class TAUTLINE_SOLVERS_EXPORT AssemblyPattern
 {
 public:
   /**
-   * @param mesh stays alive as long as the pattern
-   * @param options the flags are read here only
-   * Throws Error for cells of other types: which, how many, and what to do.
+   * @param mesh must outlive the pattern
+   * @param options the flags are only read here. Throws Error for cells of other types, stating
+   * which, how many, and a remedy.
    */
   explicit AssemblyPattern(const Mesh& mesh, const AssemblyOptions& options = {});
 
   /**
-   * @brief Fills a matrix; one that this pattern filled before keeps its memory. numberOfPoints
-   * square.
-   * @param points coordinates instead of those of the mesh, 3 per point; or null
-   * Throws Error for coordinates or coefficients that are not finite: the first cell that has them.
+   * @brief Fills a matrix of size numberOfPoints x numberOfPoints; a matrix filled by this pattern
+   * before keeps its memory.
+   * @param points coordinates that replace the mesh points, 3 per point; or null. Throws Error for
+   * coordinates or coefficients that are not finite, stating the first such cell.
    */
   void assemble(
     const DiffusionOperator& pde, SparseMatrix& matrix, const double* points = nullptr) const;
 
   /**
    * @brief The same for linear elasticity: unknown d p + k is component k of point p, d =
-   * elasticComponents(). The components of a planar mesh are along Mesh::frame(). Throws Error also
-   * for surfaces in space, and for E, nu or factors out of their range.
+   * elasticComponents(). The components of a planar mesh are along Mesh::frame(). Also throws Error
+   * for surfaces in space, and for E, nu or factors out of range.
    */
   void assemble(
     const ElasticOperator& pde, SparseMatrix& matrix, const double* points = nullptr) const;
@@ -98,7 +97,7 @@ private:
   {
     const MeshView& view = this->Input->view();
     const int nodes = this->Uniform ? this->Stride : this->Nodes[view.cellTypes[cell]];
-    // Lagrange triangles have 6 nodes or 7.
+    // Lagrange triangles have 6 or 7 nodes.
     return this->Quadratic && nodes > 0
       ? static_cast<int>(view.offsets[cell + 1] - view.offsets[cell])
       : nodes;
@@ -115,25 +114,25 @@ private:
   Index cellOf(Index use) const { return this->Uses[use] >> this->PlaceBits; }
 
   int Stride = 0;                     // maximum number of nodes of a cell
-  int PlaceBits = 0;                  // that a place in a cell takes
-  bool Uniform = false;               // all cells have so many, without gaps
-  bool Quadratic = false;             // the elements
-  std::array<signed char, 256> Nodes; // of a cell by its VTK type; 0: it does not count
-  /// The cells at each point, in increasing order, each with the point's place in it: cell *
-  /// 2^PlaceBits + place.
+  int PlaceBits = 0;                  // bits of a position in a cell
+  bool Uniform = false;               // whether all cells have this many, without gaps
+  bool Quadratic = false;             // whether the elements are quadratic
+  std::array<signed char, 256> Nodes; // of a cell by its VTK type; 0: ignored
+  /// The cells at each point, in increasing order, each with the position of the point in it: cell
+  /// * 2^PlaceBits + position.
   std::vector<Index> UseOffsets;
   std::vector<std::uint32_t> Uses;
-  /// Where the nodes of each use are in the row of its point; Stride per use.
+  /// The positions of the nodes of each use in the row of its point; Stride per use.
   std::vector<std::uint16_t> Slots;
   std::vector<Index> Offsets; // rows of points
   std::vector<std::int32_t> Columns;
 };
 
-/// The matrix of a scalar operator: AssemblyPattern for one time.
+/// The matrix of a scalar operator: a single use of AssemblyPattern.
 TAUTLINE_SOLVERS_EXPORT SparseMatrix stiffnessMatrix(
   const Mesh& mesh, const DiffusionOperator& pde, const AssemblyOptions& options = {});
 
-/// The matrix of linear elasticity: AssemblyPattern for one time.
+/// The matrix of linear elasticity: a single use of AssemblyPattern.
 TAUTLINE_SOLVERS_EXPORT SparseMatrix stiffnessMatrix(
   const Mesh& mesh, const ElasticOperator& pde, const AssemblyOptions& options = {});
 

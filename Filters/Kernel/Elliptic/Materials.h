@@ -19,18 +19,19 @@ constexpr SymmetricTensor IdentityTensor = { 1, 1, 1, 0, 0, 0 };
 /// The operator -div(C grad u) + a u, section 2.2 (2.3) and section 4.9 (4.11), (4.20).
 struct DiffusionOperator
 {
-  /// C, in the coordinates of space; positive semidefinite. On triangles in space only its
+  /// C, in the coordinates of space; positive semidefinite. On triangles in space, only its
   /// tangential part acts.
   SymmetricTensor tensor = IdentityTensor;
   const double* tensors = nullptr; ///< 6 per cell, instead of tensor; or null
-  double reaction = 0.0;           ///< a; where it is negative the matrix may be indefinite
+  double reaction = 0.0;           ///< a; if it is negative, the matrix may be indefinite
 };
 
 /// Linear elasticity (2.4): -div(lambda (div u) I + 2 mu eps(u)).
 struct ElasticOperator
 {
   double youngsModulus = 1.0; ///< E > 0
-  /// nu, -1 to 0.5 (plane stress: 1), exclusive. Near 0.5 linear elements lock: they are too stiff.
+  /// nu, -1 to 0.5 (plane stress: 1), exclusive. Near 0.5, linear elements lock: they are too
+  /// stiff.
   double poissonRatio = 0.3;
   const double* stiffening = nullptr;    ///< factors of E, one per cell, positive; or null
   PlaneState plane = PlaneState::Strain; ///< planar meshes only

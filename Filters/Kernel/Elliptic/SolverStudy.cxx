@@ -12,7 +12,7 @@ namespace tautline
 {
 namespace
 {
-// Differences of times that another run would not show again.
+// Differences of times that are not reproducible.
 constexpr double noiseFraction = 0.1, noiseSeconds = 1e-3;
 constexpr int tableMethods = 4, tablePreconditioners = 4; // of Table 2.5
 
@@ -30,7 +30,7 @@ double processSeconds()
   return static_cast<double>(time.tv_sec) + nanosecond * static_cast<double>(time.tv_nsec);
 }
 
-/// A number as people write it: three digits.
+/// A number with three significant digits.
 std::string digits(double value)
 {
   char text[32];
@@ -67,8 +67,8 @@ private:
   const EllipticSystem& System;
   const SolverStudyOptions& Options;
   Stopwatch Time;
-  std::unique_ptr<PointNumbering> Scalars; // unknowns one by one, of several ranks
-  std::vector<bool> TakesOptions;          // of each combination: PETSc's options
+  std::unique_ptr<PointNumbering> Scalars; // numbering of single unknowns, on several ranks
+  std::vector<bool> TakesOptions;          // per combination: whether it uses the PETSc options
   double Reported = 0;                     // progress
   SolverStudy Result;
 };
@@ -82,7 +82,7 @@ LinearSystem Study::systemFor(const SolverCombination& combination)
   {
     return linear;
   }
-  // Multigrid gets the matrix only.
+  // Give multigrid only the matrix.
   linear.blockSize = 1;
   linear.coordinates = nullptr;
   if (linear.numbering)
@@ -106,8 +106,8 @@ LinearSystem Study::systemFor(const SolverCombination& combination)
 }
 
 //------------------------------------------------------------------------------
-/// Determines in which combinations PETSc's options have an effect, and whether all options are
-/// good, before any time is spent.
+/// Determines in advance the combinations in which PETSc options have an effect, and checks all
+/// options.
 void Study::checkOptions()
 {
   const auto& combinations = this->Options.combinations;
@@ -127,7 +127,7 @@ void Study::checkOptions()
     {
       message = message.empty() ? error.what() : message;
       options.petscOptions.clear();
-      LinearSolver(this->systemFor(combinations[i]), options); // another error goes on
+      LinearSolver(this->systemFor(combinations[i]), options); // rethrows other errors
     }
   }
   if (std::count(this->TakesOptions.begin(), this->TakesOptions.end(), true) == 0)
@@ -143,14 +143,14 @@ bool Study::overTime() const
     this->System.numbering().maximum(this->Time.seconds()) >= this->Options.maximumSeconds;
 }
 
-/// Reports progress of this rank, which only grows though residuals need not fall.
+/// Reports the progress of this rank, which never decreases although residuals may increase.
 bool Study::reportHere(double fraction)
 {
   this->Reported = std::max(this->Reported, std::min(1.0, fraction));
   return this->Options.progress(this->Reported);
 }
 
-/// Reports progress; false when the study is to stop, on all ranks.
+/// Reports progress; false if the study must stop, on all ranks.
 bool Study::report(double fraction)
 {
   if (!this->Options.progress)
@@ -174,7 +174,7 @@ LinearSolution Study::solveOnce(const SolverCombination& combination, std::size_
   {
     options.petscOptions.clear();
   }
-  // To begin, a combination may wait for the set-up of another one that was given up.
+  // Before it starts, a combination may wait for the abandoned setup of another one.
   SolverOptions beginning = options;
   beginning.maximumSeconds = 0.0;
   if (this->Options.maximumSeconds > 0)
@@ -194,7 +194,7 @@ LinearSolution Study::solveOnce(const SolverCombination& combination, std::size_
     options.observerSeconds = options.observer ? options.observerSeconds : interval;
     options.observer = [&](int iteration, double norm)
     {
-      // The residual falls about evenly on a logarithmic scale.
+      // The residual decreases roughly uniformly on a logarithmic scale.
       first = iteration == 0 ? norm : first;
       const double done =
         first > 0 && norm > 0 && tolerance > 0 ? std::log(norm / first) / std::log(tolerance) : 0;
@@ -230,7 +230,7 @@ SolverStudyRow Study::solve(const SolverCombination& combination, std::size_t in
     }
     catch (const Error& error)
     {
-      linear.reason = SolveReason::OtherFailure; // options without effect, found late
+      linear.reason = SolveReason::OtherFailure; // options without effect, detected late
       linear.message = error.what();
     }
     const double cpu = processSeconds() - before;
@@ -307,7 +307,7 @@ std::string Study::nameIn(const SolverCombination& combination) const
   return nameOf(combination) + (hasModes ? " with the rigid body modes" : "");
 }
 
-/// How the time of a combination grows with the mesh.
+/// Describes how the time of a combination grows with the mesh.
 std::string Study::outlook(const SolverStudyRow& best) const
 {
   const bool flat = this->System.mesh().dimension() != Dimension::Volume;
@@ -348,7 +348,7 @@ std::string Study::outlook(const SolverStudyRow& best) const
   return text;
 }
 
-/// What is wrong with the mesh or the matrix rather than with a solver.
+/// Warnings about the mesh or the matrix rather than about a solver.
 std::string Study::warnings() const
 {
   std::string text;
@@ -363,8 +363,8 @@ std::string Study::warnings() const
     text += " The matrix is nearly singular (condition about " + digits(condition) +
       " even with a preconditioner): check the fixed points and the coefficients.";
   }
-  // The inverse mean ratio is the trace of an element's matrix over that of the ideal one (in the
-  // plane).
+  // The inverse mean ratio is the trace of an element matrix over the trace for the ideal element
+  // (in the plane).
   const Mesh& mesh = this->System.mesh();
   const Index cells = mesh.view().numberOfCells;
   std::vector<double> shape(cells);
@@ -422,7 +422,7 @@ void Study::recommend()
     {
       why = "No clear recommendation: the times of " + std::to_string(this->Result.ties + 1) +
         " combinations differ by less than " + digits(noise) +
-        " s, the noise: raise Repetitions, or take a finer mesh. The fastest was ";
+        " s, the noise: raise Repetitions, or use a finer mesh. The fastest was ";
     }
     why += this->nameIn(best.combination) + ": " + digits(best.seconds) + " s";
     if (best.combination.method != KrylovMethod::Direct)
@@ -443,13 +443,13 @@ void Study::recommend()
       why += ".";
     }
     why += this->outlook(best);
-    // The tolerance is of the preconditioned residual, which may be much smaller.
+    // The tolerance applies to the preconditioned residual, which may be much smaller.
     constexpr double factor = 10;
     if (best.trueResidual > factor * this->Options.solver.relativeTolerance)
     {
-      why += " What remains of the equations is " + digits(best.trueResidual) +
-        " of the right-hand side: the tolerance is of the preconditioned residual. Make it smaller "
-        "if the solution is to be more accurate.";
+      why += " The true residual is " + digits(best.trueResidual) +
+        " of the right-hand side: the tolerance applies to the preconditioned residual. Reduce "
+        "it for a more accurate solution.";
     }
   }
   else
@@ -464,8 +464,10 @@ void Study::recommend()
   }
   if (notRun > 0)
   {
-    why += " " + std::to_string(notRun) + (notRun == 1 ? " was" : " were") +
-      " not run: " + (this->Result.aborted ? "the study was stopped." : "the time was over.");
+    why += " " + std::to_string(notRun) + (notRun == 1 ? " was" : " were") + " not run: " +
+      (this->Result.aborted ? "the study was stopped."
+                            : "the time limit was "
+                              "reached.");
   }
   why += this->warnings();
 }

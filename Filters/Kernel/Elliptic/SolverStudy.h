@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SolverStudy.h
- * @brief Solves one system by many combinations of solver and preconditioner (Table 2.5) and
+ * @brief Solves one system with many combinations of solver and preconditioner (Table 2.5) and
  * recommends one.
  */
 #ifndef tautline_SolverStudy_h
@@ -24,7 +24,7 @@ struct SolverCombination
 
 /// "CG + ILU(0)".
 TAUTLINE_SOLVERS_EXPORT std::string nameOf(const SolverCombination& combination);
-/// The sixteen of Table 2.5, in its order; as there, multigrid gets the matrix only (nearNullSpace
+/// The sixteen of Table 2.5, in its order; as there, multigrid gets only the matrix (nearNullSpace
 /// = false).
 TAUTLINE_SOLVERS_EXPORT std::vector<SolverCombination> dissertationCombinations();
 
@@ -33,18 +33,18 @@ struct SolverStudyOptions
 {
   std::vector<SolverCombination> combinations = dissertationCombinations();
   /**
-   * @brief The rest: tolerances, restart, omega, limits per combination. PETSc options go to the
-   * combinations in which they have an effect; one that has none in any of them is an error. The
-   * observer is called, too, and `cancelled` ends the study.
+   * @brief The remaining options: tolerances, restart, omega, limits per combination. PETSc options
+   * are passed to the combinations in which they have an effect; an option without effect in all of
+   * them is an error. The observer is also called, and `cancelled` ends the study.
    */
   SolverOptions solver;
-  /// Estimate the condition of each P^-1 A by the Ritz values of CG, which is run besides where it
-  /// is not in the list.
+  /// Estimate the condition of each P^-1 A from the Ritz values of CG, which is run additionally if
+  /// it is not in the list.
   bool conditions = true;
-  int repetitions = 1;         ///< the best of their times counts; at least 1
+  int repetitions = 1;         ///< the best time is used; at least 1
   double maximumSeconds = 0.0; ///< of the whole study; 0: no limit
-  /// Called with the fraction done, 0 to 1; the study stops when it returns false. On several ranks
-  /// all have one or none has.
+  /// Called with the fraction done, 0 to 1; the study stops when it returns false. On several
+  /// ranks, either all or none must have it.
   std::function<bool(double)> progress;
 };
 
@@ -53,10 +53,10 @@ struct SolverStudyRow
 {
   SolverCombination combination;
   LinearSolution linear;     ///< of the fastest repetition
-  double seconds = 0.0;      ///< wall time of set-up and solve; of several ranks the slowest
-  double cpuSeconds = 0.0;   ///< CPU time of this process for that, all threads
+  double seconds = 0.0;      ///< wall time of setup and solve; on several ranks, of the slowest
+  double cpuSeconds = 0.0;   ///< corresponding CPU time of this process, all threads
   double condition = 0.0;    ///< of P^-1 A, estimated from inside its spectrum; 0: not estimated
-  double trueResidual = 0.0; ///< norm of b - A x over that of b
+  double trueResidual = 0.0; ///< norm of b - A x over the norm of b
   bool run = false;          ///< false if the study ended before it
 };
 
@@ -65,16 +65,16 @@ struct SolverStudy
 {
   std::vector<SolverStudyRow> rows; ///< one per combination
   Index recommended = -1;           ///< the fastest that converged; -1: none did
-  /// How many others took the same time within the noise of the clock: a tenth or a millisecond
-  /// more. Above 0 the recommendation is not a clear one, and `why` begins with it.
+  /// The number of others that took the same time up to noise: a tenth or a millisecond more. If
+  /// above 0, the recommendation is not clear, and `why` begins with this remark.
   Index ties = 0;
   std::string why; ///< a few sentences for the user
   bool aborted = false, timeLimit = false;
 };
 
 /**
- * @brief Solves the system by each combination, from 0. Collective over the ranks. Failures are
- * reasons of their rows; invalid options throw Error.
+ * @brief Solves the system with each combination, starting from 0. Collective over the ranks.
+ * Failures are reasons in their rows; invalid options throw Error.
  */
 TAUTLINE_SOLVERS_EXPORT SolverStudy studySolvers(
   const EllipticSystem& system, const SolverStudyOptions& options = {});

@@ -31,7 +31,7 @@ SparseMatrix combined(double alpha, const SparseMatrix& a, double beta, const Sp
   return sum;
 }
 
-/// The place of a column in a row.
+/// The position of a column in a row.
 std::size_t placeOf(const SparseMatrix& matrix, Index row, std::int32_t column)
 {
   const auto first = matrix.columns.begin() + matrix.offsets[row];
@@ -39,13 +39,13 @@ std::size_t placeOf(const SparseMatrix& matrix, Index row, std::int32_t column)
   return static_cast<std::size_t>(std::lower_bound(first, last, column) - matrix.columns.begin());
 }
 
-/// A matrix of the steps with its solver. A set-up that was given up may still read both parts.
+/// A step matrix with its solver. An abandoned setup may still read both parts.
 struct StepMatrix
 {
   struct Kept
   {
     SparseMatrix matrix;
-    std::shared_ptr<const void> system; // has the coordinates
+    std::shared_ptr<const void> system; // owns the coordinates
   };
 
   StepMatrix(
@@ -89,7 +89,8 @@ private:
   std::unique_ptr<StepMatrix> Current;
   double Alpha = 0.0, Beta = 0.0; // of Current
   Vector Velocity, Acceleration;
-  double Scale = 0.0; // the largest residual so far; what is below its rounding error is 0
+  // the largest residual so far; a residual below its rounding error is treated as 0
+  double Scale = 0.0;
   TimeSeries Series;
 };
 
@@ -106,7 +107,7 @@ Integrator::Integrator(
   {
     value *= time.density;
   }
-  this->Options.observer = nullptr; // that of the caller counts steps, not iterations
+  this->Options.observer = nullptr; // the observer of the caller counts steps, not iterations
   this->Options.initialGuess = true;
 }
 
@@ -123,7 +124,7 @@ StepMatrix& Integrator::matrix(double alpha, double beta)
 {
   if (!this->Current || this->Alpha != alpha || this->Beta != beta)
   {
-    this->Current.reset(); // its memory first
+    this->Current.reset(); // free its memory first
     this->Current = std::make_unique<StepMatrix>(this->System,
       combined(alpha, this->System.matrix(), beta, this->Mass), this->Time.rigidBodyModes,
       this->Options);
@@ -139,7 +140,7 @@ bool Integrator::solve(StepMatrix& matrix, const Vector& b, Vector& x, bool coun
   const double limit = this->Options.maximumSeconds;
   if (limit > 0)
   {
-    // At least a little, so that the solver itself reports the limit.
+    // A small positive limit, so that the solver itself reports it.
     matrix.Solver->options().maximumSeconds = std::max(limit - this->Watch.seconds(), 1e-3 * limit);
   }
   matrix.Solver->options().absoluteTolerance =
@@ -187,7 +188,7 @@ bool Integrator::heatStep(int number)
   const bool two = this->Time.scheme == TimeScheme::Bdf2 && number > 1;
   const bool middle = this->Time.scheme == TimeScheme::CrankNicolson;
 
-  // The difference quotient of u is (c0 u_new + c1 u + c2 u_old) / dt.
+  // The difference quotient for u is (c0 u_new + c1 u + c2 u_old) / dt.
   const double c0 = two ? 1.5 : 1.0, c1 = two ? -2.0 : -1.0, c2 = two ? 0.5 : 0.0;
   Vector known(now.size());
   for (std::size_t i = 0; i < known.size(); ++i)
@@ -196,7 +197,7 @@ bool Integrator::heatStep(int number)
     known[i] = -(c1 * now[i] + c2 * old) / dt;
   }
   Vector b = this->product(this->Mass, known);
-  const double share = middle ? 0.5 : 1.0; // of A that acts on the new values
+  const double share = middle ? 0.5 : 1.0; // the fraction of A that acts on the new values
   const Vector flux = middle ? this->product(this->System.matrix(), now) : Vector();
   for (std::size_t i = 0; i < b.size(); ++i)
   {
@@ -284,7 +285,7 @@ TimeSeries Integrator::run(const Vector& start, const Vector& velocity)
   return std::move(this->Series);
 }
 
-/// Throws Error for what cannot be integrated.
+/// Throws Error if the problem cannot be integrated.
 void requireOptions(const EllipticSystem& system, const TimeOptions& time, const Vector& start,
   const Vector& velocity)
 {
@@ -340,8 +341,8 @@ SparseMatrix massMatrix(const EllipticSystem& system, MassMatrix kind)
     const bool counts = !(system.part().skip && system.part().skip[cell]);
     if (counts && isQuadratic(elementKind(mesh.view(), cell)))
     {
-      throw Error("The sums of the rows of the mass matrix are not positive for quadratic "
-                  "elements, at their corners: choose the consistent mass matrix.");
+      throw Error("The row sums of the mass matrix are not positive at the corners of "
+                  "quadratic elements: choose the consistent mass matrix.");
     }
   }
   DiffusionOperator identity;
@@ -359,7 +360,7 @@ SparseMatrix massMatrix(const EllipticSystem& system, MassMatrix kind)
   {
     freeIndex[free[i]] = static_cast<Index>(i);
   }
-  // Each component has the scalar matrix; a lumped row has the columns of fixed points, too.
+  // Each component has the scalar matrix; a lumped row also includes the columns of fixed points.
   const auto fill = [&](Index i)
   {
     const Index row = free[i];
@@ -412,7 +413,7 @@ std::vector<double> unknownsOf(const EllipticSystem& system, const std::vector<d
 void requireSeriesMemory(const EllipticSystem& system, const TimeOptions& time)
 {
   requireMemory(sizeof(double) * static_cast<double>(system.matrix().size) * (time.steps + 1.0),
-    "the solution at all time steps", "take fewer time steps or a coarser mesh");
+    "the solution at all time steps", "use fewer time steps or a coarser mesh");
 }
 
 //------------------------------------------------------------------------------

@@ -4,8 +4,8 @@
  * @brief The heat equation u_t + L u = f and the wave equation u_tt + L u = f, with the elliptic
  * operator L, right-hand side and Dirichlet data of an EllipticSystem.
  *
- * Linear finite elements in space, steps of equal length in time. The matrix of the steps stays the
- * same, and so does its preconditioner. f and the given values do not depend on time.
+ * Linear finite elements in space, steps of equal length in time. The step matrix and its
+ * preconditioner stay the same. f and the given values do not depend on time.
  *
  * Example: 100 steps of the heat equation by the Crank-Nicolson method, from u = 0.
  *
@@ -28,9 +28,9 @@ enum class TimeScheme : int
 {
   Stationary = 0,    ///< no time: L u = f
   BackwardEuler = 1, ///< heat, order 1, L-stable
-  Bdf2 = 2,          ///< heat, order 2, L-stable; the first step is one of backward Euler
+  Bdf2 = 2,          ///< heat, order 2, L-stable; the first step uses backward Euler
   CrankNicolson = 3, ///< heat, order 2, A-stable
-  Newmark = 4        ///< wave, order 2: beta = 1/4, gamma = 1/2, keeps the energy
+  Newmark = 4        ///< wave, order 2: beta = 1/4, gamma = 1/2, conserves the energy
 };
 
 /// The mass matrix. The numbers are stable.
@@ -53,14 +53,14 @@ struct TimeOptions
   bool rigidBodyModes = true;
 };
 
-/// What was computed; entry 0 is the start.
+/// The computed series; entry 0 is the start.
 struct TimeSeries
 {
   std::vector<double> times;
   std::vector<std::vector<double>> values; ///< of the unknowns of this rank
-  /// Of each step: the report of its linear system, without residual norms of each iteration.
+  /// Per step: the report of its linear system, without the residual norms of the iterations.
   std::vector<LinearSolution> solves;
-  /// The norm of the last residual of each step, as the method measures it.
+  /// The norm of the last residual of each step, in the norm of the method.
   std::vector<double> residuals;
   /// Seconds of the preconditioners of all matrices, and of all solves.
   double setupSeconds = 0.0, solveSeconds = 0.0;
@@ -75,7 +75,7 @@ struct TimeSeries
  */
 TAUTLINE_SOLVERS_EXPORT SparseMatrix massMatrix(const EllipticSystem& system, MassMatrix kind);
 
-/// The unknowns of values at all points, 1 (elasticity: 3) each.
+/// Extracts the unknowns from values at all points, 1 (elasticity: 3) each.
 TAUTLINE_SOLVERS_EXPORT std::vector<double> unknownsOf(
   const EllipticSystem& system, const std::vector<double>& pointValues);
 
@@ -84,18 +84,19 @@ TAUTLINE_SOLVERS_EXPORT void requireSeriesMemory(
   const EllipticSystem& system, const TimeOptions& time);
 
 /**
- * @brief Integrates in time. Collective. Of one rank it calls requireSeriesMemory(); several ranks
- * call that before, and agree on what to do.
+ * @brief Integrates in time. Collective. On one rank, it calls requireSeriesMemory(); several ranks
+ * must call that before, and agree on the outcome.
  *
  * @param start the unknowns at time 0
- * @param velocity their derivatives at time 0: of Newmark
- * @param options of the linear systems: the time limit is that of all steps together. Each
- * solve starts from the extrapolation of the steps before; a residual below the rounding error of
- * the largest one so far is 0. The observer is called after each step
- * with its number and the norm of its residual; it ends the integration by false.
+ * @param velocity their derivatives at time 0, for Newmark
+ * @param options for the linear systems: the time limit applies to all steps together. Each solve
+ * starts from the extrapolation of the previous steps; a residual below the rounding error of the
+ * largest one so far is treated as 0. The observer is called after each step with its number and
+ * the norm of its residual; it returns false to end the integration.
  *
  * Throws Error for a step, a number of steps or a density out of range, and values that are not
- * finite. A step that does not converge ends the integration; its reason is that of the result.
+ * finite. A step that does not converge ends the integration; its reason becomes the reason of the
+ * result.
  */
 TAUTLINE_SOLVERS_EXPORT TimeSeries integrate(const EllipticSystem& system, const TimeOptions& time,
   const std::vector<double>& start, const std::vector<double>& velocity,

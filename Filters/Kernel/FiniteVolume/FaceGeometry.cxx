@@ -13,7 +13,7 @@ namespace tautline
 {
 namespace
 {
-/// Cells of smaller volume have their center at the mean of those of their faces.
+/// Cells of smaller volume have their center at the mean of the face centers.
 constexpr double NoVolume = 1e-300;
 
 /// Calls visit(p, q) for corresponding points of a coupled patch and the other one.
@@ -37,8 +37,9 @@ void forEachPair(
   }
 }
 
-/// The rigid motion that takes the points of the other patch nearest to those of a patch (Kabsch,
-/// Acta Cryst. A32 (1976)); a shift if that does, up to the accuracy with which patches match.
+/// The rigid motion that best maps the points of the other patch to the points of a patch (Kabsch,
+/// Acta Cryst. A32 (1976)); a translation if that suffices within the matching tolerance of
+/// patches.
 PatchMotion motionOf(const FaceMesh& mesh, const FacePatch& patch, const double* points)
 {
   PatchMotion motion;
@@ -87,9 +88,9 @@ PatchMotion motionOf(const FaceMesh& mesh, const FacePatch& patch, const double*
   return motion;
 }
 
-/// Gives each of two faces at one place, of a patch that is coupled in part and of the patch for
-/// the rest, half of the area. OpenFOAM gives each what overlaps, and what does not; the sum is the
-/// same, and so is all that is measured of cells.
+/// Halves the area between two coincident faces, one of a partly coupled patch and one of the patch
+/// for the rest. OpenFOAM assigns the overlapping and the remaining area; the sum is the same, and
+/// so are all cell metrics.
 void shareAreas(const FaceMesh& mesh, std::vector<Vec3>& areas)
 {
   const auto samePoints = [&mesh](Index a, Index b)

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file FaceGeometry.h
- * @brief Areas, centers and volumes as finite-volume programs compute them.
+ * @brief Areas, centers and volumes as in finite-volume programs.
  *
- * A face is a fan of triangles about the mean of its points. Its area vector S is the sum of
- * theirs. Its center is the mean of their centers with weights by the convention. A cell is made of
- * pyramids over its faces with a common apex, the mean of the centers of the faces; its volume is
- * their sum, its center their mean by volume.
+ * A face is a fan of triangles about the mean of its points. Its area vector S is the sum of the
+ * area vectors of the triangles. Its center is the weighted mean of their centers, with weights
+ * according to the convention. A cell consists of pyramids over its faces with a common apex, the
+ * mean of the face centers; its volume is the sum of their volumes, its center the volume-weighted
+ * mean of their centers.
  *
  * Source: OpenFOAM v1912 and v8, primitiveMesh; stated in the notes of its Programmer's Guide.
  */
@@ -18,7 +19,7 @@
 
 namespace tautline
 {
-/// How the other patch of a coupled pair is moved to a patch: x becomes R x + t.
+/// The motion from the other patch of a coupled pair to a patch: x becomes R x + t.
 struct PatchMotion
 {
   std::array<Vec3, 3> rows = { Vec3{ 1, 0, 0 }, Vec3{ 0, 1, 0 }, Vec3{ 0, 0, 1 } }; ///< of R
@@ -40,7 +41,8 @@ struct FaceGeometry
   std::vector<Vec3> center;     ///< per face
   std::vector<Vec3> cellCenter; ///< per cell
   std::vector<double> volume;   ///< per cell
-  /// Per patch: of coupled ones, by the points of their faces, which correspond in opposite order.
+  /// Per patch: for coupled patches, determined from the points of their faces, which correspond in
+  /// opposite order.
   std::vector<PatchMotion> motions;
 };
 
@@ -48,11 +50,11 @@ struct FaceGeometry
 TAUTLINE_KERNEL_EXPORT FaceGeometry faceGeometry(
   const FaceMesh& mesh, const double* points, FaceConvention convention, int threads = 0);
 
-/// A place at the coupled face of a face, moved as the other patch must move to meet its own.
+/// Maps a position at the coupled face to the patch of a face.
 TAUTLINE_KERNEL_EXPORT Vec3 acrossPatch(
   const FaceMesh& mesh, const FaceGeometry& geometry, Index face, const Vec3& place);
 
-/// A vector at a coupled face, turned in the opposite sense: to the other patch.
+/// Rotates a vector in the opposite direction: to the other patch.
 TAUTLINE_KERNEL_EXPORT Vec3 alongPatch(
   const FaceMesh& mesh, const FaceGeometry& geometry, Index face, const Vec3& vector);
 

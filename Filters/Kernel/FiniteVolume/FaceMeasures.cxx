@@ -21,20 +21,19 @@ constexpr double Least = 1e-150;
 constexpr double LeastVolume = 1e-300;
 constexpr double LeastLength = 1e-15;
 
-/// A component of a mean normal below this does not take away a direction.
+/// A component of a mean normal below this does not remove a direction.
 constexpr double DirectionTolerance = 1e-6;
 
-/// The sine of the smallest angle between two edges of a face that counts as a corner: of 10
-/// degrees.
+/// The sine of the smallest angle between two edges of a face that forms a corner: 10 degrees.
 const double LeastTurn = std::sin(10 / DegreesPerRadian);
 
-/// A part of the mean distance from the face, in place of a width that is smaller.
+/// The minimum width as a fraction of the mean distance from the face.
 constexpr double InternalWidth = 0.2, BoundaryWidth = 0.4;
 
-/// Determinants of a cube: of its six internal faces, and of all faces by area.
+/// The determinants of a cube: for six internal faces, and for all faces weighted by area.
 constexpr double CubeDeterminant = 8, CubeAreaDeterminant = 1.0 / 27;
 
-/// The longest edge of the unit cube of coordinates: an axis normal has one component above.
+/// A coordinate-axis normal has one component above this.
 constexpr double HalfComponent = 0.5;
 
 Vec3 unit(const Vec3& v)
@@ -223,7 +222,7 @@ FaceValues FaceMeasures::evaluate(Metric metric) const
       if (metricInfo(metric).family != MetricFamily::Faces)
       {
         throw Error(std::string("The metric ") + metricInfo(metric).name +
-          " is one of elements, not of faces between cells.");
+          " is defined for elements, not for faces between cells.");
       }
       return this->ofFaces(metric);
   }
@@ -297,7 +296,7 @@ double FaceMeasures::cosineAcross(Index face) const
 }
 
 //------------------------------------------------------------------------------
-/// How far the points of a face are from its center along a direction.
+/// The extent of a face from its center along a direction.
 double FaceMeasures::width(Index face, const Vec3& direction) const
 {
   double widest = 0;
@@ -310,7 +309,8 @@ double FaceMeasures::width(Index face, const Vec3& direction) const
 }
 
 //------------------------------------------------------------------------------
-/// How far the line between the cells passes the center of the face, over the width of the face.
+/// The distance of the line between the cell centers from the face center, over the width of the
+/// face.
 double FaceMeasures::skewness(Index face) const
 {
   const FaceGeometry& g = this->Geometry;
@@ -337,8 +337,8 @@ double FaceMeasures::boundarySkewness(Index face) const
 }
 
 //------------------------------------------------------------------------------
-/// Of the owner and of the cell across from the face, times its area; negative where the center of
-/// the cell is beyond the face.
+/// The distances of the owner and of the cell across from the face, times its area; negative if the
+/// cell center is beyond the face.
 std::array<double, 2> FaceMeasures::signedDistances(Index face) const
 {
   if (!this->Mesh.hasTwoCells(face))
@@ -365,7 +365,7 @@ std::vector<double> FaceMeasures::ownerWeights() const
   parallelFor(this->Mesh.faces(), ChunkSize, this->Threads,
     [&](Index face)
     {
-      // As in OpenFOAM, distances have signs at coupled patches, and none at internal faces.
+      // As in OpenFOAM, distances are signed at coupled patches and unsigned at internal faces.
       const bool inside = this->Mesh.internal(face) || this->Mesh.has(face, OnBorder);
       const auto [own, other] = inside ? this->distances(face) : this->signedDistances(face);
       weights[face] = own + other != 0 ? other / (own + other) : 1.0;
@@ -390,7 +390,7 @@ double FaceMeasures::flatness(Index face) const
 }
 
 //------------------------------------------------------------------------------
-/// The largest sine of a turn of the edges against the others; 0 of a convex face.
+/// The largest sine of a reversed turn of the edges; 0 for a convex face.
 double FaceMeasures::concavity(Index face) const
 {
   const Index size = this->Mesh.size(face), first = this->Mesh.offsets[face];
@@ -417,7 +417,7 @@ double FaceMeasures::concavity(Index face) const
 }
 
 //------------------------------------------------------------------------------
-/// The least cosine between a triangle of the face and the direction across it.
+/// The smallest cosine between the normal of a triangle of the face and the direction across it.
 double FaceMeasures::twist(Index face) const
 {
   if (this->Mesh.size(face) == 3)
@@ -455,8 +455,8 @@ double FaceMeasures::centerTetQuality(Index face, const Vec3& center, double sig
 }
 
 //------------------------------------------------------------------------------
-/// The least quality of the tetrahedra over a fan of triangles from a point of the face, with the
-/// point for which it is largest.
+/// The smallest quality of the tetrahedra over a fan of triangles from a point of the face,
+/// maximized over the point.
 double FaceMeasures::fanTetQuality(Index face) const
 {
   const Index size = this->Mesh.size(face), first = this->Mesh.offsets[face];
@@ -592,7 +592,7 @@ double FaceMeasures::areaDeterminant(Index cell) const
 }
 
 //------------------------------------------------------------------------------
-/// The largest sine of the angle by which the center of a face is outside the plane of another.
+/// The largest sine of the angle by which a face center lies outside the plane of another face.
 double FaceMeasures::cellConcavity(Index cell) const
 {
   double largest = -1;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file FaceMeasures.h
- * @brief The metrics of MetricFamily::Faces: what finite-volume programs measure.
+ * @brief The metrics of MetricFamily::Faces, as measured by finite-volume programs.
  *
  * Each value depends on the cells on both sides of a face. The value of a cell is the worst of its
- * faces, as seen from the cell. Faces of coupled patches ("cyclic") count as internal ones.
+ * faces, as seen from the cell. Faces of coupled patches ("cyclic") are treated as internal faces.
  *
  * Example: the largest non-orthogonality.
  *
@@ -23,15 +23,15 @@ namespace tautline
 /// The axes along which a mesh has more than one cell.
 struct FaceDirections
 {
-  /// By "empty" patches: the directions that the solution depends on.
+  /// Determined by "empty" patches: the directions that the solution depends on.
   std::array<bool, 3> solution = { true, true, true };
-  /// By these and "wedge" patches.
+  /// Determined by "empty" and "wedge" patches.
   std::array<bool, 3> geometric = { true, true, true };
   int count() const { return this->geometric[0] + this->geometric[1] + this->geometric[2]; }
 };
 
-/// What decides the directions of a mesh: of "empty" and of "wedge" patches, the sums of the
-/// magnitudes of their normals.
+/// The data that determine the directions of a mesh: the sums of the magnitudes of the normals of
+/// "empty" and "wedge" patches.
 struct DirectionSums
 {
   Vec3 empty = { 0, 0, 0 }, wedge = { 0, 0, 0 };
@@ -47,11 +47,11 @@ struct FaceValues
 
 /**
  * @class FaceMeasures
- * @brief Evaluates the metrics on a mesh, which must outlive it, and so must the points.
+ * @brief Evaluates the metrics on a mesh. The mesh and the points must outlive this object.
  *
- * Faces without a cell on the other side have the ideal value of metrics that compare two cells. A
- * face or cell of no size has the value of the metric that is the worst or 0; values are finite for
- * finite points.
+ * For metrics that compare two cells, faces without a cell on the other side have the ideal value.
+ * A face or cell of zero size has the worst value of the metric or 0; values are finite for finite
+ * points.
  */
 class TAUTLINE_KERNEL_EXPORT FaceMeasures
 {
@@ -64,7 +64,7 @@ public:
   const FaceDirections& directions() const { return this->Directions; }
   const FaceExtent& extent() const { return this->Extent; } ///< of all points
   DirectionSums directionSums() const;
-  /// For a piece of a mesh: extent and directions of the whole, see joinMeasures().
+  /// For a piece of a mesh: sets the extent and directions of the whole mesh, see joinMeasures().
   void setWhole(const FaceExtent& extent, const DirectionSums& sums);
 
   /// Throws Error for a metric of another family.
@@ -77,12 +77,12 @@ public:
   std::vector<double> ownerWeights() const;
 
   /// The values of Metric::CenterTetQuality as seen from the owner and from the neighbor of each
-  /// face; of boundary faces both are the owner's.
+  /// face; for boundary faces, both are the value from the owner.
   std::vector<std::array<double, 2>> centerTetQualities() const;
 
   /**
-   * @brief One Validity per cell: inverted where its volume or that of a pyramid over one of its
-   * faces is negative, degenerate where one is 0, not finite where a point is.
+   * @brief One Validity per cell: inverted if its volume or the volume of a pyramid over one of its
+   * faces is negative, degenerate if one is 0, not finite if a point is not finite.
    */
   std::vector<signed char> validity() const;
 

@@ -26,7 +26,7 @@ NodeList listOf(const std::vector<Index>& offsets, const std::vector<Index>& nod
   return { nodes.data() + offsets[i], offsets[i + 1] - offsets[i] };
 }
 
-/// The same for all orders of the points, and rarely the same for other points.
+/// A hash that is independent of the order of the points and rarely equal for other points.
 std::uint64_t keyOf(const NodeList& list)
 {
   std::uint64_t key = 0;
@@ -77,9 +77,9 @@ public:
   }
 
   const std::vector<Index>& mates() const { return this->Mate; }
-  /// Of each listed face the first facet there, or -1.
+  /// Per listed face: the first facet there, or -1.
   const std::vector<Index>& facets() const { return this->Facet; }
-  /// Of each facet the listed face there, or -1; one is enough of an internal face.
+  /// Per facet: a listed face there, or -1; for an internal face, either of its two.
   const std::vector<Index>& listed() const { return this->ListedAt; }
   const std::vector<Index>& cells() const { return this->CellOf; }
 
@@ -95,14 +95,14 @@ public:
       {
         throw Error("A face of cell " + std::to_string(this->CellOf[i]) + " is one of cell " +
           std::to_string(this->CellOf[TooMany - this->Mate[i]]) +
-          " and of others, too: remove duplicate and overlapping cells. (ParaView's own reader of "
+          " and also of others: remove duplicate and overlapping cells. (ParaView's own reader of "
           "OpenFOAM cases makes such cells unless Decompose Polyhedra is off.)");
       }
     }
   }
 
 private:
-  /// In place of a mate, less the number of another one: there are three or more.
+  /// Stored instead of a mate, minus the number of another face, if there are three or more.
   static constexpr Index TooMany = -2;
 
   struct Use
@@ -118,7 +118,7 @@ private:
       : listOf(this->Facets.offsets, this->Facets.nodes, number - this->Listed);
   }
 
-  /// Files all lists under their smallest points.
+  /// Sorts all lists by their smallest points.
   void file(Index points, int threads)
   {
     const Index all = this->Listed + static_cast<Index>(this->Facets.patch.size());
@@ -186,7 +186,7 @@ private:
     {
       return;
     }
-    // Two sides of a border that the cells have closed.
+    // The two sides of a processor border that the cells have closed.
     const bool closed = listed == 2 &&
       std::all_of(same.begin() + listed, same.end(),
         [this](Index number)
@@ -196,7 +196,7 @@ private:
         });
     for (Index i = 0; i < facets; ++i)
     {
-      // Of a baffle, each cell has the facets that point out of it.
+      // At a baffle, each cell has the facets that point out of it.
       const Index facet = same[listed + i] - this->Listed;
       const Index side = listed == 2 && facets > 1 && !closed && !this->pointsOut(same, i);
       this->ListedAt[facet] = same[side];
@@ -219,8 +219,8 @@ private:
     }
   }
 
-  /// Whether a facet of a baffle, whose two cells come first, is of the first cell. One of two is
-  /// of each cell, whatever their senses.
+  /// Whether a facet of a baffle, whose two cells come first, belongs to the first cell. Each cell
+  /// gets one of two facets, for any orientation.
   bool pointsOut(const std::vector<Index>& same, Index facet) const
   {
     const bool second = facet == 1 && same.size() == 4;
@@ -251,8 +251,8 @@ struct OuterFace
   Index listed, facet;
 };
 
-/// The faces of the boundary: those of each patch, in the order of the facets, those without a
-/// facet last. Two patches, one of which slides, may both have a facet at a face.
+/// The boundary faces: patch by patch in the order of the facets, then faces without a facet. Two
+/// patches, one of which slides, may both have a facet at a face.
 std::vector<std::vector<OuterFace>> boundaryOf(
   const FaceMatch& match, const ListedFacets& facets, const std::vector<FacePatch>& patches)
 {
@@ -333,7 +333,7 @@ FaceMesh findFaces(Index points, const ListedFaces& cells, const ListedFacets& f
   mesh.cells = static_cast<Index>(cells.cellOffsets.size()) - 1;
   mesh.strayFacets = match.strayFacets();
 
-  // By owner, of one owner by neighbor, of one pair in the order of the owner's list.
+  // Sort by owner, then by neighbor, then in the order of the owner's list.
   std::vector<std::pair<Index, Index>> ofCell;
   for (Index cell = 0; cell < mesh.cells; ++cell)
   {
@@ -356,7 +356,7 @@ FaceMesh findFaces(Index points, const ListedFaces& cells, const ListedFacets& f
     {
       append(mesh, listOf(cells.faceOffsets, cells.nodes, listed), cell);
       mesh.neighbor.push_back(neighbor);
-      // From the smallest point on, whichever a file or a piece begins with.
+      // Start at the smallest point, for any starting point in a file or a piece.
       const auto first = mesh.nodes.begin() + mesh.offsets[mesh.faces() - 1];
       std::rotate(first, std::min_element(first, mesh.nodes.end()), mesh.nodes.end());
     }
@@ -376,7 +376,7 @@ FaceMesh findFaces(Index points, const ListedFaces& cells, const ListedFacets& f
     mesh.patches[p].count = static_cast<Index>(lists[p].size());
     for (const auto& [listed, facet] : lists[p])
     {
-      // A facet begins with the point that corresponds to one of a coupled face.
+      // A facet begins with the point that corresponds to the first point of the coupled face.
       const NodeList ofCell = listOf(cells.faceOffsets, cells.nodes, listed);
       const NodeList given = facet >= 0 ? listOf(facets.offsets, facets.nodes, facet) : ofCell;
       append(mesh, sameSense(ofCell, given) ? given : ofCell, match.cells()[listed]);
@@ -390,8 +390,8 @@ FaceMesh findFaces(Index points, const ListedFaces& cells, const ListedFacets& f
 
 namespace
 {
-/// Flags the boundary faces that are in one of the two planes across an axis; empty if these do not
-/// hold all points, or if a cell does not have one face in each.
+/// Flags the boundary faces in the two extreme planes perpendicular to an axis; empty if these
+/// planes do not contain all points, or if a cell does not have one face in each.
 std::vector<char> findSides(
   const FaceMesh& mesh, const double* points, const FaceExtent& box, int axis)
 {
@@ -434,8 +434,8 @@ bool isLayer(const FaceMesh& mesh, const double* points, const FaceExtent& exten
 void markLayer(FaceMesh& mesh, const double* points, const FaceExtent& extent, int axis)
 {
   std::vector<char> side = findSides(mesh, points, extent, axis);
-  side.resize(mesh.faces(), 0); // of a piece without cells
-  // The sides first, each part in its order.
+  side.resize(mesh.faces(), 0); // for a piece without cells
+  // The sides come first, each part in its original order.
   std::vector<Index> order;
   for (const bool ofSides : { true, false })
   {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file FaceMesh.h
- * @brief A mesh of polyhedral cells as finite-volume programs keep it: faces with an owner and a
- * neighbor.
+ * @brief A mesh of polyhedral cells in the face-based form of finite-volume programs: faces with an
+ * owner and a neighbor.
  *
- * Internal faces come first, by owner and then by neighbor, which have greater numbers; then those
- * of the boundary, patch by patch. The points of a face run counter-clockwise seen from its
- * neighbor, so that its area vector points out of its owner.
+ * Internal faces come first, sorted by owner and then by neighbor (the neighbor has the larger
+ * number); then boundary faces, patch by patch. The points of a face run counterclockwise as seen
+ * from its neighbor, so that its area vector points out of its owner.
  */
 #ifndef tautline_FaceMesh_h
 #define tautline_FaceMesh_h
@@ -24,15 +24,15 @@ namespace tautline
 struct FacePatch
 {
   std::string name;
-  /// By OpenFOAM's names: patch, wall, symmetry, empty, wedge, cyclic, processor, ...
+  /// OpenFOAM's name: patch, wall, symmetry, empty, wedge, cyclic, processor, ...
   std::string type = "patch";
   Index first = 0; ///< its first face
   Index count = 0;
-  /// Of "cyclic": the patch that it is coupled with, face by face if it has as many.
+  /// For "cyclic": the coupled patch, face by face if the numbers of faces are equal.
   int partner = -1;
 
   bool isEmpty() const { return this->type == "empty"; }
-  /// Whether its faces correspond one by one with those of another patch.
+  /// Whether its faces correspond one-to-one to the faces of another patch.
   bool isCyclic() const { return this->type == "cyclic" || this->type == "cyclicSlip"; }
   /// Whether its points have counterparts in another patch, mesh or process.
   bool isCoupled() const
@@ -41,16 +41,16 @@ struct FacePatch
       this->type.rfind("processor", 0) == 0 || this->type == "overset";
   }
   bool isWedge() const { return this->type == "wedge"; }
-  /// Whether its faces are coupled in part: another patch has the same faces, for the rest.
+  /// Whether its faces are partly coupled: another patch has the same faces for the remaining part.
   bool isPartly() const { return this->type == "cyclicACMI"; }
 };
 
-/// What a face is in a piece of a mesh, see joinPieces(). The values are bits.
+/// The role of a face in a piece of a mesh, see joinPieces(). The values are bits.
 enum FaceRole : unsigned char
 {
-  CountsElsewhere = 1,    ///< in another piece, as one between two pieces or of a cell there
-  PairComesElsewhere = 2, ///< of a cyclic pair of which the first face is in another piece
-  OnBorder = 4            ///< between two pieces, inside of the whole mesh
+  CountsElsewhere = 1,    ///< in another piece, as a face between two pieces or of a cell there
+  PairComesElsewhere = 2, ///< of a cyclic pair whose first face is in another piece
+  OnBorder = 4            ///< between two pieces, inside the whole mesh
 };
 
 /// Faces, and the cells on their sides.
@@ -68,7 +68,7 @@ struct FaceMesh
   std::vector<Index> cellOffsets;     ///< of each cell in `cellFaces`; one more than cells
   std::vector<Index> cellFaces;       ///< faces of the cells, in increasing order
   std::vector<Index> facet;           ///< per boundary face: the number of the given facet, or -1
-  /// Per cell: nonzero if it is of another piece, here for comparison only. Empty: none is.
+  /// Per cell: nonzero if it belongs to another piece and is here for comparison only. Empty: none.
   std::vector<unsigned char> foreignCells;
   std::vector<unsigned char> roles; ///< per face: bits of FaceRole. Empty: none.
 
@@ -77,27 +77,27 @@ struct FaceMesh
   bool internal(Index face) const { return face < this->internalFaces; }
   /// The coupled face of a boundary face, or -1.
   Index coupled(Index face) const { return this->partner[face - this->internalFaces]; }
-  /// Whether there is a cell on both sides, perhaps beyond a coupled patch.
+  /// Whether there are cells on both sides, possibly across a coupled patch.
   bool hasTwoCells(Index face) const { return this->internal(face) || this->coupled(face) >= 0; }
   bool has(Index face, FaceRole role) const
   {
     return !this->roles.empty() && (this->roles[face] & role) != 0;
   }
-  /// Whether a cell is of this piece.
+  /// Whether a cell belongs to this piece.
   bool ownsCell(Index cell) const
   {
     return this->foreignCells.empty() || !this->foreignCells[cell];
   }
-  /// Whether a face counts in this piece. Each face of a mesh counts in one of its pieces.
+  /// Whether a face is counted in this piece. Each face of a mesh is counted in exactly one piece.
   bool ownsFace(Index face) const { return !this->has(face, CountsElsewhere); }
-  /// Whether a cell of this piece is on one side of a face.
+  /// Whether a cell on one side of a face belongs to this piece.
   bool touches(Index face) const
   {
     return this->ownsCell(this->owner[face]) ||
       (this->internal(face) && this->ownsCell(this->neighbor[face]));
   }
   /// Whether the value of a face counts in the mean of a metric that compares two cells: internal
-  /// faces and, of coupled ones, the first of each pair.
+  /// faces and the first face of each coupled pair.
   bool countsOnce(Index face) const
   {
     return this->ownsFace(face) && this->hasTwoCells(face) &&
@@ -124,7 +124,7 @@ struct FaceExtent
   }
 };
 
-/// The faces of cells, each as a list of points that runs counter-clockwise seen from outside.
+/// The faces of cells, each as a list of points that runs counterclockwise as seen from outside.
 struct ListedFaces
 {
   std::vector<Index> cellOffsets = { 0 }; ///< of each cell in `faceOffsets`
@@ -132,7 +132,7 @@ struct ListedFaces
   std::vector<Index> nodes;
 };
 
-/// Faces that are given beside the cells, such as those of patches.
+/// Faces that are specified in addition to the cells, such as the faces of patches.
 struct ListedFacets
 {
   std::vector<Index> offsets = { 0 };
@@ -142,29 +142,28 @@ struct ListedFacets
 
 /**
  * @brief Finds the faces of cells: two cells that list the same points share a face, unless two
- * facets are given there, which are then faces of the boundary (a baffle). Two facets of
- * "processor" patches make no baffle, as pieces were put together there. Where one facet is of
- * a patch that isPartly() and the other is not, both are faces of the boundary.
+ * facets are given there, which are then boundary faces (a baffle). Two facets of "processor"
+ * patches do not form a baffle, because pieces were joined there. If one facet belongs to a patch
+ * that isPartly() and the other does not, both are boundary faces.
  *
- * The boundary has the given facets, patch by patch, in their order, each from its first point on
- * if it points out of its cell; faces without a facet are the
- * last patch, "boundary", if there are any. Facets that lie between two cells, of which there is
- * one only, are not faces of the boundary.
+ * The boundary has the given facets, patch by patch, in their order, each starting from its first
+ * point if it points out of its cell. Faces without a facet, if any, form the last patch,
+ * "boundary". A single facet between two cells is not a boundary face.
  *
- * @param patches their names and types; `first` and `count` are set. The faces of "cyclic" patches
- * whose partner has another number of faces are not coupled.
+ * @param patches their names and types; `first` and `count` are set. Faces of "cyclic" patches are
+ * not coupled if the partner has a different number of faces.
  *
- * Throws Error where three or more cells share a face, or a cell lists one twice.
+ * Throws Error if three or more cells share a face, or if a cell lists a face twice.
  */
 TAUTLINE_KERNEL_EXPORT FaceMesh findFaces(Index points, const ListedFaces& cells,
   const ListedFacets& facets, std::vector<FacePatch> patches, int threads = 0);
 
-/// Whether a mesh is one layer of cells across an axis: all points are in the two planes that bound
-/// the extent, and each cell has one face in each. @param extent of the whole mesh
+/// Whether a mesh is one layer of cells perpendicular to an axis: all points are in the two planes
+/// that bound the extent, and each cell has one face in each. @param extent of the whole mesh
 TAUTLINE_KERNEL_EXPORT bool isLayer(
   const FaceMesh& mesh, const double* points, const FaceExtent& extent, int axis);
 
-/// Makes the faces in the two planes of a layer an "empty" patch, the first one.
+/// Collects the faces in the two planes of a layer in an "empty" patch, the first one.
 /// @param mesh without coupled patches, for which isLayer() is true
 TAUTLINE_KERNEL_EXPORT void markLayer(
   FaceMesh& mesh, const double* points, const FaceExtent& extent, int axis);

@@ -29,7 +29,7 @@ std::uint64_t hashOf(const FacePiece& piece, Index point, std::uint64_t seed)
   return SplitMix::mixed(SplitMix::mixed(SplitMix::mixed(seed ^ bits[0]) ^ bits[1]) ^ bits[2]);
 }
 
-/// The same for all orders of the points.
+/// Independent of the order of the points.
 Key keyOfFace(const FacePiece& piece, Index face)
 {
   Key key = { 0, 0 };
@@ -43,8 +43,8 @@ Key keyOfFace(const FacePiece& piece, Index face)
   return key;
 }
 
-/// Of a processorCyclic patch, with the number of its faces: the same for it and for the patch that
-/// it is coupled with; "" if the name is not one of OpenFOAM's.
+/// A key for a processorCyclic patch, including the number of its faces: the same for the coupled
+/// patch; "" if the name does not follow OpenFOAM's scheme.
 std::string pairName(const FaceMesh& mesh, const FacePatch& patch)
 {
   const std::string prefix = "procBoundary", separator = "to", through = "through";
@@ -81,20 +81,21 @@ struct FacePlace
   bool operator<(const FacePlace& other) const { return this->tied() < other.tied(); }
 };
 
-/// A face that may be one of another piece, too.
+/// A face that may also belong to another piece.
 struct Candidate
 {
   Key key;
   FacePlace place;
   bool hasFacet;
-  bool ofProcessors; ///< of a patch between processors, or one of a pair: also within a piece
+  /// on a patch between processors, or one of a pair: may also match within a piece
+  bool ofProcessors;
   bool operator<(const Candidate& other) const
   {
     return std::tie(this->key, this->place) < std::tie(other.key, other.place);
   }
 };
 
-/// Two places of one face.
+/// Two occurrences of one face.
 struct Mates
 {
   FacePlace here, there;
@@ -143,7 +144,7 @@ private:
     mesh.roles[face] = static_cast<unsigned char>(mesh.roles[face] | role);
   }
 
-  /// Faces between cells of other pieces count there.
+  /// Faces between cells of other pieces are counted there.
   void flagForeign(FaceMesh& mesh)
   {
     for (Index face = 0; face < mesh.faces() && !mesh.foreignCells.empty(); ++face)
@@ -155,7 +156,8 @@ private:
     }
   }
 
-  /// Of each "cyclic" patch the smallest id of a facet, if pieces have ids; uncouples them.
+  /// Finds the smallest facet id of each "cyclic" patch, if pieces have ids, and uncouples these
+  /// patches.
   void findFirstIds()
   {
     const bool here = std::all_of(this->Pieces.begin(), this->Pieces.end(),
@@ -192,7 +194,7 @@ private:
 
   static bool isPaired(const FacePatch& patch) { return patch.isCyclic() && patch.partner >= 0; }
 
-  /// Of a face of a "cyclic" patch: the same as that of the face that it is coupled with.
+  /// A key for a face of a "cyclic" patch: the same as the key of the coupled face.
   Key keyOfPair(const FacePiece& piece, Index number, Index face) const
   {
     const FacePatch& patch = piece.mesh->patches[number];
@@ -257,7 +259,7 @@ private:
     return hash;
   }
 
-  /// The pairs of which the first is of a piece of this rank, in order.
+  /// The pairs whose first face is in a piece of this rank, in order.
   std::vector<Mates> match(const std::vector<std::vector<Candidate>>& sent)
   {
     std::vector<Candidate> all = this->Group.exchangeJoined(sent);
@@ -271,7 +273,7 @@ private:
       }
       if (next - i > 2)
       {
-        throw Error("A face of the mesh is one of three or more cells in its pieces: remove "
+        throw Error("A face of the mesh belongs to three or more cells in its pieces: remove "
                     "duplicate and overlapping cells.");
       }
       const Candidate &a = all[i], &b = all[next - 1];
@@ -306,7 +308,7 @@ private:
       (patchOf(mesh, face).type == "processorCyclic" || isPaired(patchOf(mesh, face)));
   }
 
-  /// Couples faces of one piece, and says where the others count.
+  /// Couples faces of one piece, and sets where the others are counted.
   void coupleOwn(const std::vector<Mates>& mates)
   {
     for (const Mates& pair : mates)
@@ -329,8 +331,8 @@ private:
     }
   }
 
-  /// The faces of a cell. Of two at one place, of a patch that isPartly() and the one for the rest,
-  /// the other one is left out: the copy of the cell has the whole face once.
+  /// The faces of a cell. If a face is split between a patch that isPartly() and the patch for the
+  /// rest, only one is kept, so that the copy of the cell has the whole face once.
   static std::vector<Index> facesOnce(const FacePiece& piece, Index cell)
   {
     const FaceMesh& mesh = *piece.mesh;
@@ -351,8 +353,8 @@ private:
     return faces;
   }
 
-  /// What is sent of a cell: its faces by points that are numbered from 0 on, and which of them the
-  /// piece that gets it has.
+  /// Packs a cell for sending: its faces with points numbered from 0, and which of them the
+  /// receiving piece has.
   void pack(const FacePiece& piece, Index cell, const std::vector<Mates>& pairs,
     std::vector<Index>& numbers, std::vector<double>& places) const
   {
@@ -395,7 +397,7 @@ private:
   void fetchCells(const std::vector<Mates>& mates)
   {
     const auto ranks = static_cast<std::size_t>(this->Group.size());
-    // By receiving piece, then by own piece and cell: a cell is sent once.
+    // Sorted by receiving piece, then by own piece and cell, so that a cell is sent once.
     std::map<std::array<Index, 4>, std::vector<Mates>> cells;
     for (const Mates& pair : mates)
     {
@@ -463,7 +465,7 @@ private:
     for (Index i = 0; i < pairs; ++i)
     {
       const Index own = pair[2 * i], copy = firstFace + pair[2 * i + 1];
-      if (!mesh.internal(own)) // else a ghost cell is there already
+      if (!mesh.internal(own)) // otherwise a ghost cell is already there
       {
         mesh.partner[own - mesh.internalFaces] = copy;
         mesh.partner[copy - mesh.internalFaces] = own;
@@ -477,7 +479,8 @@ private:
     place += 3 * points;
   }
 
-  /// Patches whose faces all are coupled by a motion get a partner, so that it is found.
+  /// Patches whose faces are all coupled by a motion get a partner, so that the motion is
+  /// determined.
   void finish(FaceMesh& mesh)
   {
     if (mesh.patches.back().count == 0)
@@ -594,7 +597,7 @@ void joinMeasures(RankGroup& group, const std::vector<FaceMeasures*>& pieces)
 
 namespace
 {
-/// Each once: of points at the same place one counts, likewise of edges.
+/// Keeps each item once: coincident points are counted once, as are coincident edges.
 template <class Item>
 Index countOnce(RankGroup& group, const std::vector<MeshCheckReport*>& pieces,
   const std::vector<Item> BorderItems::*member)
@@ -608,7 +611,7 @@ Index countOnce(RankGroup& group, const std::vector<MeshCheckReport*>& pieces,
   std::vector<Item> all = group.gatherOnFirst(own);
   std::sort(all.begin(), all.end());
   all.erase(std::unique(all.begin(), all.end()), all.end());
-  return group.sum(static_cast<Index>(all.size())); // on the other ranks none
+  return group.sum(static_cast<Index>(all.size())); // empty on the other ranks
 }
 }
 

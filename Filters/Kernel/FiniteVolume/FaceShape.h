@@ -51,7 +51,7 @@ void forEachEdge(const Index* nodes, Index size, const double* points, const Vis
 inline FaceShape faceShape(
   const Index* nodes, Index size, const double* points, FaceConvention convention)
 {
-  // Faces whose triangles are smaller together have no area.
+  // Faces whose triangles have a smaller total area are treated as having none.
   constexpr double noArea = 1e-150;
   const Vec3 mean = meanOf(nodes, size, points);
   if (size == 3)

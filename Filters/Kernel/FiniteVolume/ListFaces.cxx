@@ -18,10 +18,10 @@ struct FaceEdge
 {
   Index low, high;
   Index face;   ///< its number in the cell
-  bool forward; ///< whether the face runs it from low to high
+  bool forward; ///< whether the face traverses it from low to high
 };
 
-/// The edges of the faces of a cell, those of the same points side by side.
+/// The edges of the faces of a cell, with edges of the same points adjacent.
 std::vector<FaceEdge> edgesOf(const ListedFaces& list, Index cell)
 {
   std::vector<FaceEdge> edges;
@@ -46,7 +46,7 @@ bool sameEdge(const FaceEdge& a, const FaceEdge& b)
   return a.low == b.low && a.high == b.high;
 }
 
-/// Whether the edges come in twos.
+/// Whether the edges occur in pairs.
 bool isClosed(const std::vector<FaceEdge>& edges)
 {
   bool closed = edges.size() % 2 == 0;
@@ -58,12 +58,12 @@ bool isClosed(const std::vector<FaceEdge>& edges)
   return closed;
 }
 
-/// The faces of a closed cell that are to be turned so that all agree with the first one.
+/// The faces of a closed cell that must be reversed to agree with the first one.
 std::vector<char> turnedFaces(const std::vector<FaceEdge>& edges, Index faces)
 {
-  std::vector<char> turned(faces, -1); // not known
+  std::vector<char> turned(faces, -1); // unknown
   turned[0] = 0;
-  // Each pass settles at least one face, or the cell is in parts.
+  // Each pass determines at least one face, unless the cell is disconnected.
   for (bool changed = true; changed;)
   {
     changed = false;
@@ -103,7 +103,7 @@ double sixVolumes(const ListedFaces& list, Index cell, const double* points)
 
 void reverseFace(ListedFaces& list, Index face)
 {
-  // The first point stays.
+  // Keep the first point in place.
   std::reverse(list.nodes.begin() + list.faceOffsets[face] + 1,
     list.nodes.begin() + list.faceOffsets[face + 1]);
 }

@@ -25,7 +25,7 @@ constexpr double MostOpenness = 1e-6, MostAspectRatio = 1000, LeastSize = 1e-300
                  LeastFlatness = 0.8, LeastDeterminant = 1e-3, MostConcavity = -1e-6,
                  LeastWeight = 0.05, LeastVolumeRatio = 0.01, ShortEdge = 1e-6, MostTurn = 10,
                  WrongAngle = 90;
-/// Beyond the cosine of a right angle by this, a face is wrong.
+/// A face is wrong if it exceeds the cosine of a right angle by this.
 constexpr double WrongCosine = 1e-15;
 
 }
@@ -124,7 +124,7 @@ private:
     this->Report.faces[face] |= bit(kind);
   }
 
-  /// Sets extremes and mean of the values that count.
+  /// Sets the extremes and the mean of the counted values.
   template <class Counts>
   void summarize(Kind kind, const std::vector<double>& values, const Counts& countsIn)
   {
@@ -179,7 +179,7 @@ private:
     }
   }
 
-  /// Calls visit(face, cell, sign) for the faces of the cells of this piece.
+  /// Calls visit(face, cell, sign) for the faces of the cells in this piece.
   template <class Visit>
   void forEachSide(const Visit& visit) const
   {
@@ -196,7 +196,7 @@ private:
     }
   }
 
-  /// One flag per point: other pieces may have it, too.
+  /// One flag per point: nonzero if other pieces may also have it.
   std::vector<char> borderPoints() const
   {
     std::vector<char> border(this->Mesh.points, 0);
@@ -286,9 +286,10 @@ void Checker::checkTopology(const MeshCheckFacts& facts)
 }
 
 //------------------------------------------------------------------------------
-/// Whether an edge is neither along the missing directions nor at right angles to them.
+/// Whether an edge is neither parallel nor perpendicular to the missing directions.
 bool Checker::askew(const Vec3& edge) const
 {
+  // OpenFOAM's rule: an edge may not combine a missing direction with any other.
   int missing = 0, present = 0;
   for (int c = 0; c < 3; ++c)
   {
@@ -377,6 +378,8 @@ void Checker::checkEdges()
   };
   unique(askew);
   unique(ofWedges);
+  // Edges of wedge faces may be oblique. Edges on the border of a piece are left to joinReports(),
+  // which counts them once.
   std::vector<Edge> counted;
   std::set_difference(
     askew.begin(), askew.end(), ofWedges.begin(), ofWedges.end(), std::back_inserter(counted));
@@ -465,7 +468,7 @@ void Checker::checkFaces()
     [this](Index face) { return this->Mesh.ownsFace(face) && this->Mesh.size(face) > 3; },
     [](Index, double value) { return value < LeastFlatness; });
 
-  // Each side of a face counts.
+  // Count each side of a face.
   const FaceGeometry& g = this->Measures.geometry();
   MeshCheck& pyramids = this->at(Kind::PyramidVolume);
   pyramids.least = std::numeric_limits<double>::infinity();
@@ -484,7 +487,7 @@ void Checker::checkFaces()
 }
 
 //------------------------------------------------------------------------------
-/// What compares the cells on both sides of a face.
+/// Checks that compare the cells on both sides of a face.
 void Checker::checkPairs()
 {
   const auto once = [this](Index face) { return this->Mesh.countsOnce(face); };
@@ -570,7 +573,7 @@ void Checker::checkCoupledPoints()
 }
 
 //------------------------------------------------------------------------------
-/// Tetrahedra over a face, by its center and by a fan.
+/// Checks the tetrahedra over a face, from its center and from a fan.
 void Checker::checkTets()
 {
   const Kind kind = Kind::FaceTets;
@@ -653,7 +656,7 @@ int MeshCheckReport::failed(bool all) const
   int number = 0;
   for (const MeshCheck& check : this->checks)
   {
-    // checkMesh makes both in one.
+    // checkMesh performs both as one check.
     const bool counted =
       check.kind == MeshCheckKind::CellAspectRatio && (*this)[MeshCheckKind::CellOpenness].failed();
     number += check.failed() && (all || !check.thorough) && !counted;

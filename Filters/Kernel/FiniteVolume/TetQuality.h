@@ -14,8 +14,8 @@
 namespace tautline
 {
 /**
- * @brief The signed volume over that of the regular tetrahedron with the same circumscribed sphere:
- * 1 of the regular one, positive where (b - a) x (c - a) points to d.
+ * @brief The signed volume divided by the volume of the regular tetrahedron with the same
+ * circumscribed sphere: 1 for the regular one, positive if (b - a) x (c - a) points to d.
  */
 inline double tetQuality(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
 {

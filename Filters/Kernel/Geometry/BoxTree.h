@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BoxTree.h
- * @brief Boxes in boxes, to find those that meet a box, and the object nearest to a point.
- * Internal: not installed.
+ * @brief A bounding-box tree that finds the boxes that meet a box, and the object nearest to a
+ * point. Internal: not installed.
  */
 #ifndef tautline_BoxTree_h
 #define tautline_BoxTree_h
@@ -71,8 +71,8 @@ private:
 
 /**
  * @class tautline::BoxTree
- * @brief A binary tree by medians along the longest side; nodes are in preorder. What it finds does
- * not depend on the order of the boxes; of several at the same distance it is the lowest number.
+ * @brief A binary tree by medians along the longest side; nodes are in preorder. Results do not
+ * depend on the order of the boxes; ties in distance are resolved by the lowest number.
  */
 class BoxTree
 {
@@ -89,7 +89,7 @@ public:
   }
 
   bool empty() const { return this->Nodes.empty(); }
-  /// Around all boxes; there must be some.
+  /// The bounds of all boxes; there must be at least one.
   const BoundingBox& bounds() const { return this->Nodes[0].box; }
 
   /// Calls visit(number) for each box that meets the given one.
@@ -113,8 +113,9 @@ public:
   }
 
   /**
-   * @brief The number of the object nearest to a point, the lowest one of several; -1 without any.
-   * @param squaredDistance squaredDistance(number) of an object, which is in its box
+   * @brief The number of the object nearest to a point, the lowest one in case of ties; -1 if there
+   * are none.
+   * @param squaredDistance squaredDistance(number) of an object, which must be inside its box
    */
   template <class Distance>
   Index nearest(const Vec3& x, const Distance& squaredDistance) const
@@ -171,7 +172,7 @@ private:
   {
     BoundingBox box;
     Index begin = 0, end = 0; ///< of Order
-    std::size_t next = 0;     ///< the node after those below this one
+    std::size_t next = 0;     ///< the node after the descendants of this one
     bool leaf = false;
   };
 
@@ -196,7 +197,7 @@ private:
       const auto place = [&](Index i)
       { return this->Boxes[i].low[axis] + this->Boxes[i].high[axis]; };
       const auto first = this->Order.begin();
-      // Ties by number, so that the order does not depend on the library's selection.
+      // Break ties by number, so that the order does not depend on the library implementation.
       std::nth_element(first + begin, first + middle, first + end,
         [&](Index a, Index b) { return place(a) < place(b) || (place(a) == place(b) && a < b); });
       this->build(begin, middle);

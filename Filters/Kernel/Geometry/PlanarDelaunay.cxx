@@ -30,7 +30,7 @@ public:
   std::vector<Index> order() const;
 
 private:
-  /// Twice the area of a triangle, counter-clockwise positive.
+  /// Twice the area of a triangle, positive if counterclockwise.
   Real area(Index a, Index b, Index c) const
   {
     const Real ux = Real(this->X[b]) - this->X[a], uy = Real(this->Y[b]) - this->Y[a];
@@ -68,7 +68,7 @@ Triangulation::Triangulation(const std::vector<double>& points)
       high[c] = std::max(high[c], points[2 * i + c]);
     }
   }
-  // A triangle around all of them, far away.
+  // A large triangle around all points.
   const double size = std::max(high[0] - low[0], high[1] - low[1]);
   const double x = 0.5 * (low[0] + high[0]), y = 0.5 * (low[1] + high[1]);
   const double far = 50.0 * size;
@@ -81,7 +81,7 @@ Triangulation::Triangulation(const std::vector<double>& points)
   this->TriangleOf.assign(this->Count + 3, 0);
 }
 
-/// Points in rows that go to and fro, so that each is near the one before.
+/// Orders points in rows of alternating direction, so that each is near the previous one.
 std::vector<Index> Triangulation::order() const
 {
   const auto rows =
@@ -128,12 +128,12 @@ bool Triangulation::inCircle(Index a, Index b, Index c, Index p) const
   const auto u = row(a), v = row(b), w = row(c);
   const Real terms[3] = { u[2] * (v[0] * w[1] - v[1] * w[0]), v[2] * (w[0] * u[1] - w[1] * u[0]),
     w[2] * (u[0] * v[1] - u[1] * v[0]) };
-  // Clearly inside, so that points on one circle do not flip to and fro.
+  // Require clearly inside, so that cocircular points do not flip back and forth.
   return terms[0] + terms[1] + terms[2] >
     1e-15L * (std::abs(terms[0]) + std::abs(terms[1]) + std::abs(terms[2]));
 }
 
-/// Walks from the last triangle towards p.
+/// Walks from the last triangle toward p.
 Index Triangulation::locate(Index p)
 {
   Index t = this->Last;
@@ -143,7 +143,7 @@ Index Triangulation::locate(Index p)
     Index next = -1;
     for (int k = 0; k < 3 && next < 0; ++k)
     {
-      const int side = static_cast<int>((k + step) % 3); // does not circle for ever
+      const int side = static_cast<int>((k + step) % 3); // prevents endless cycles
       const Index a = triangle.points[(side + 1) % 3], b = triangle.points[(side + 2) % 3];
       if (this->area(a, b, p) < 0.0L && triangle.beside[side] >= 0 && !this->onLine(a, b, p))
       {
@@ -165,7 +165,7 @@ int Triangulation::cornerOf(Index t, Index p) const
   return points[0] == p ? 0 : points[1] == p ? 1 : 2;
 }
 
-/// Replaces a triangle in the list of a neighbour.
+/// Replaces a triangle in the list of a neighbor.
 void Triangulation::link(Index t, Index other, Index formerly)
 {
   if (other >= 0)
@@ -187,7 +187,7 @@ void Triangulation::flip(Index t, int corner)
   const Index q = other.points[far];
   const Index besideB = old.beside[(corner + 1) % 3], besideA = old.beside[(corner + 2) % 3];
   const Index otherA = other.beside[(far + 1) % 3], otherB = other.beside[(far + 2) % 3];
-  // `other` is q, b, a: its neighbour opposite b is across q-a, opposite a across q-b.
+  // `other` is q, b, a: its neighbor opposite b is across q-a, opposite a across q-b.
   this->Triangles[t] = { { p, a, q }, { otherA, u, besideA } };
   this->Triangles[u] = { { p, q, b }, { otherB, besideB, t } };
   this->link(t, otherA, u);
@@ -241,7 +241,7 @@ void Triangulation::insert(Index p)
     const Index corner = old.points[k];
     if (this->X[corner] == this->X[p] && this->Y[corner] == this->Y[p])
     {
-      throw Error("two points of the mesh's boundary coincide: clean the mesh first");
+      throw Error("two boundary points of the mesh coincide: clean the mesh first");
     }
     if (this->onLine(old.points[(k + 1) % 3], old.points[(k + 2) % 3], p))
     {
@@ -291,8 +291,8 @@ void Triangulation::insert(Index p)
   this->Last = this->TriangleOf[p];
 }
 
-/// Whether the edge is there; and a triangle at a that has it, or whose opposite edge the segment
-/// crosses.
+/// Whether the edge exists; also gives a triangle at a that has it, or whose opposite edge the
+/// segment crosses.
 bool Triangulation::hasEdge(Index a, Index b, Index& triangle) const
 {
   triangle = -1;
@@ -312,7 +312,7 @@ bool Triangulation::hasEdge(Index a, Index b, Index& triangle) const
     {
       triangle = t;
     }
-    t = this->Triangles[t].beside[(corner + 1) % 3]; // counter-clockwise around a
+    t = this->Triangles[t].beside[(corner + 1) % 3]; // counterclockwise around a
     if (t < 0 || t == first)
     {
       break;
@@ -331,7 +331,7 @@ void Triangulation::recover(Index a, Index b)
   {
     if (t < 0)
     {
-      throw Error("a point of the mesh's boundary lies on one of its edges: clean the mesh first");
+      throw Error("a boundary point of the mesh lies on a boundary edge: clean the mesh first");
     }
     // Walk along the segment to the first edge whose two triangles are convex.
     int corner = this->cornerOf(t, a);
@@ -346,7 +346,7 @@ void Triangulation::recover(Index a, Index b)
       const Index c = this->Triangles[t].points[(corner + 1) % 3],
                   d = this->Triangles[t].points[(corner + 2) % 3];
       const bool convex = this->area(p, c, q) > 0.0L && this->area(p, q, d) > 0.0L;
-      // A flip helps if the new edge p-q no longer crosses the segment, or now and then anyway.
+      // A flip helps if the new edge p-q no longer crosses the segment; occasionally flip anyway.
       const Real sideP = p == a ? 0.0L : this->area(a, b, p),
                  sideQ = q == b ? 0.0L : this->area(a, b, q);
       const bool helps = sideP * sideQ >= 0.0L || (turns + step) % 3 == 2;
@@ -361,7 +361,7 @@ void Triangulation::recover(Index a, Index b)
       }
       else
       {
-        // On to the edge of the next triangle the segment leaves through.
+        // Continue to the edge through which the segment leaves the next triangle.
         const bool left = sideQ > 0.0L; // q is left of a-b: the edge on its right side is crossed
         const Index leaving = left ? d : c;
         t = u;
@@ -371,7 +371,7 @@ void Triangulation::recover(Index a, Index b)
     if (++turns > 20 * this->Triangles.size() + 1000)
     {
       throw Error(
-        "an edge of the mesh's boundary could not be kept: does the boundary cross itself?");
+        "a boundary edge of the mesh could not be preserved: does the boundary intersect itself?");
     }
   }
 }

@@ -18,13 +18,13 @@ namespace tautline
 /**
  * @brief Triangulates the convex hull of points so that every given segment is an edge.
  *
- * Delaunay but for the segments: by insertion and flips, segments by the flips of S. W. Sloan
- * (Computers & Structures 47 (1993) 441-450). No two points may coincide, no two segments cross,
- * and no point lie on a segment. Throws Error where they do.
+ * Delaunay except for the segments: by insertion and flips; segments are recovered by the flips of
+ * S. W. Sloan (Computers & Structures 47 (1993) 441-450). No two points may coincide, no two
+ * segments cross, and no point lie on a segment. Throws Error otherwise.
  *
  * @param points x y each
  * @param segments pairs of point numbers
- * @return triangles, counter-clockwise
+ * @return triangles, counterclockwise
  */
 TAUTLINE_KERNEL_EXPORT std::vector<std::array<Index, 3>> constrainedDelaunay(
   const std::vector<double>& points, const std::vector<std::pair<Index, Index>>& segments);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PointTree.h
- * @brief Points in boxes in boxes: a binary tree by medians along the longest side.
- * Internal: not installed.
+ * @brief A binary tree of points by medians along the longest side of their box. Internal: not
+ * installed.
  */
 #ifndef tautline_PointTree_h
 #define tautline_PointTree_h
@@ -16,10 +16,11 @@
 namespace tautline
 {
 /**
- * @brief The points in an order in which those of a node follow each other; nodes are in preorder.
+ * @brief The points in an order in which the points of a node are contiguous; nodes are in
+ * preorder.
  *
- * Descends without recursion: the first child of node i is i + 1, and `next` is where to go on when
- * the points of node i are dealt with.
+ * Descends without recursion: the first child of node i is i + 1, and `next` is the node to visit
+ * after the points of node i have been processed.
  */
 class PointTree
 {
@@ -27,9 +28,9 @@ public:
   struct Node
   {
     std::size_t begin = 0, end = 0; ///< of order()
-    std::size_t next = 0;           ///< node after those below this one
+    std::size_t next = 0;           ///< node after the descendants of this one
     Vec3 center = { 0, 0, 0 };      ///< mean of its points
-    double radius = 0;              ///< largest distance of a point from the centre
+    double radius = 0;              ///< largest distance of a point from the center
     bool leaf = false;
   };
 
@@ -80,7 +81,7 @@ private:
       const std::size_t middle = begin + (end - begin) / 2;
       const auto at = [&](std::size_t i)
       { return this->Order.begin() + static_cast<std::ptrdiff_t>(i); };
-      // Ties by number, so that the order does not depend on the library's selection.
+      // Break ties by number, so that the order does not depend on the library implementation.
       std::nth_element(at(begin), at(middle), at(end),
         [&](std::size_t a, std::size_t b) {
           return points[a][axis] < points[b][axis] || (points[a][axis] == points[b][axis] && a < b);

@@ -17,13 +17,13 @@ namespace
 {
 using Triangle = std::array<Index, 3>;
 
-/// Whether p lies in the closed triangle abc, which is counter-clockwise.
+/// Whether p lies in the closed triangle abc, which is counterclockwise.
 bool contains(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& p)
 {
   return orientation(a, b, p) >= 0 && orientation(b, c, p) >= 0 && orientation(c, a, p) >= 0;
 }
 
-/// Cuts off one strictly convex corner without other vertices after the other.
+/// Repeatedly cuts off a strictly convex corner that contains no other vertices.
 std::vector<Triangle> clipEars(const std::vector<Vec2>& points)
 {
   std::vector<Index> left(points.size());
@@ -53,7 +53,7 @@ std::vector<Triangle> clipEars(const std::vector<Vec2>& points)
       {
         triangles.push_back(t);
         left.erase(left.begin() + static_cast<std::ptrdiff_t>(i));
-        start = i; // go on beside the ear, so that ears come from all around
+        start = i; // continue next to the ear, so that ears are distributed around the polygon
       }
     }
     if (!found)
@@ -69,7 +69,7 @@ std::vector<Triangle> clipEars(const std::vector<Vec2>& points)
   return triangles;
 }
 
-/// Of each triangle, the triangles across the edges opposite its corners, -1 at the boundary.
+/// For each triangle, the triangles across the edges opposite its corners, -1 at the boundary.
 std::vector<Triangle> findNeighbours(const std::vector<Triangle>& triangles)
 {
   std::map<std::pair<Index, Index>, std::pair<Index, int>> edges;
@@ -96,7 +96,8 @@ int cornerOf(const Triangle& triangle, Index what)
   return triangle[0] == what ? 0 : triangle[1] == what ? 1 : 2;
 }
 
-/// Lawson's flips until every diagonal is locally Delaunay; they end, for the signs are exact.
+/// Lawson's flips until every diagonal is locally Delaunay; they terminate, because the signs are
+/// exact.
 void flipToDelaunay(PolygonMesh& mesh)
 {
   std::vector<Index> pending(mesh.triangles.size());
@@ -143,7 +144,7 @@ void flipToDelaunay(PolygonMesh& mesh)
   }
 }
 
-/// Leaves of the tree first. The lowest triangle number comes first, so the order is unique.
+/// Eliminates leaves of the tree first, by lowest triangle number, so that the order is unique.
 std::vector<EliminationStep> eliminate(const PolygonMesh& mesh)
 {
   const std::size_t n = mesh.triangles.size();
@@ -165,7 +166,7 @@ std::vector<EliminationStep> eliminate(const PolygonMesh& mesh)
   for (std::size_t i = 0; i < leaves.size(); ++i)
   {
     const Index t = leaves[i];
-    int corner = 0; // of the last triangle, any vertex
+    int corner = 0; // for the last triangle, any vertex
     for (int c = 0; c < 3; ++c)
     {
       const Index neighbour = mesh.neighbours[t][c];
@@ -187,7 +188,7 @@ std::vector<EliminationStep> eliminate(const PolygonMesh& mesh)
 }
 }
 
-/// Relative to the first vertex, so that polygons far from the origin keep their digits.
+/// Relative to the first vertex, to preserve precision for polygons far from the origin.
 double signedArea(const std::vector<Vec2>& polygon)
 {
   double sum = 0.0;
@@ -241,7 +242,7 @@ bool isSimple(const std::vector<Vec2>& polygon)
       const Vec2 &c = polygon[j], &d = polygon[(j + 1) % n];
       if (j == i + 1 || (j + 1) % n == i)
       {
-        // Neighbours share a vertex; they must not turn back over each other.
+        // Adjacent edges share a vertex; they must not fold back onto each other.
         const Vec2 &before = j == i + 1 ? a : c, &shared = j == i + 1 ? b : d;
         const Vec2& after = j == i + 1 ? d : b;
         const double along = (before[0] - shared[0]) * (after[0] - shared[0]) +
@@ -265,7 +266,7 @@ PolygonMesh triangulatePolygon(std::vector<Vec2> polygon)
   if (polygon.size() < 3)
   {
     throw Error(
-      "A polygon needs at least 3 vertices, this one has " + std::to_string(polygon.size()) + ".");
+      "A polygon needs at least 3 vertices; this one has " + std::to_string(polygon.size()) + ".");
   }
   for (const Vec2& p : polygon)
   {
@@ -276,7 +277,7 @@ PolygonMesh triangulatePolygon(std::vector<Vec2> polygon)
   }
   if (!isSimple(polygon))
   {
-    throw Error("The polygon meets itself: only simple polygons can be triangulated.");
+    throw Error("The polygon intersects itself: only simple polygons can be triangulated.");
   }
   if (signedArea(polygon) < 0.0)
   {

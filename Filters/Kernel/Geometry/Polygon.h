@@ -3,10 +3,9 @@
  * @file Polygon.h
  * @brief Constrained Delaunay triangulation of a simple polygon, without interior points.
  *
- * A polygon of n vertices becomes n - 2 triangles. The triangles and the diagonals they share form
- * a tree, which is what makes dynamic programming over the triangles possible (dissertation section
- * 5.2.2): leaf after leaf, the vertex with one triangle left is eliminated (a perfect elimination
- * order).
+ * A polygon of n vertices becomes n - 2 triangles. The triangles and their shared diagonals form a
+ * tree, which makes dynamic programming over the triangles possible (dissertation section 5.2.2):
+ * leaf by leaf, a vertex with one remaining triangle is eliminated (a perfect elimination order).
  *
  *     const tautline::PolygonMesh mesh = tautline::triangulatePolygon(points);
  *     // mesh.triangles, mesh.elimination
@@ -20,7 +19,8 @@
 
 namespace tautline
 {
-/// Elimination of a vertex: its last triangle and the two other vertices of that, its parents.
+/// The elimination of a vertex: its last triangle and its parents, the two other vertices of this
+/// triangle.
 struct EliminationStep
 {
   Index triangle = 0;
@@ -31,8 +31,8 @@ struct EliminationStep
 /// A triangulated polygon.
 struct PolygonMesh
 {
-  std::vector<Vec2> points; ///< the polygon, counter-clockwise
-  /// Vertices of the n - 2 triangles, counter-clockwise.
+  std::vector<Vec2> points; ///< the polygon, counterclockwise
+  /// Vertices of the n - 2 triangles, counterclockwise.
   std::vector<std::array<Index, 3>> triangles;
   /// The triangle across the edge opposite to each vertex of a triangle; -1 across the boundary.
   std::vector<std::array<Index, 3>> neighbours;
@@ -40,13 +40,13 @@ struct PolygonMesh
   std::vector<EliminationStep> elimination;
 };
 
-/// Twice the area is positive if the polygon runs counter-clockwise.
+/// Twice the area; positive if the polygon runs counterclockwise.
 TAUTLINE_KERNEL_EXPORT double signedArea(const std::vector<Vec2>& polygon);
 
-/// The centre of mass of the area of a polygon; the mean of its vertices if the area is 0.
+/// The center of mass of the area of a polygon; the mean of its vertices if the area is 0.
 TAUTLINE_KERNEL_EXPORT Vec2 centreOfMass(const std::vector<Vec2>& polygon);
 
-/// Whether no two edges have a point in common but neighbours their vertex; exact.
+/// Whether no two edges have a point in common, except the shared vertex of adjacent edges; exact.
 TAUTLINE_KERNEL_EXPORT bool isSimple(const std::vector<Vec2>& polygon);
 
 /**
@@ -56,8 +56,8 @@ TAUTLINE_KERNEL_EXPORT bool isSimple(const std::vector<Vec2>& polygon);
  * the polygon's edges and every triangle has a positive area. A clockwise polygon is reversed.
  * O(n^2).
  *
- * Throws Error if the polygon has fewer than 3 vertices, a coordinate that is not finite, meets
- * itself or lies on a line.
+ * Throws Error if the polygon has fewer than 3 vertices, a coordinate that is not finite,
+ * intersects itself, or lies on a line.
  */
 TAUTLINE_KERNEL_EXPORT PolygonMesh triangulatePolygon(std::vector<Vec2> polygon);
 }

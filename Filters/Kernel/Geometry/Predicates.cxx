@@ -105,7 +105,7 @@ int orientation(const Vec2& a, const Vec2& b, const Vec2& c)
   {
     return sign(det);
   }
-  // Within the bound of rounding: the sign of the exact determinant.
+  // Within the rounding error bound: use the sign of the exact determinant.
   return sign(plus(times(difference(a[0], c[0]), difference(b[1], c[1])),
     times(difference(a[1], c[1]), difference(b[0], c[0])), -1.0));
 }
@@ -126,7 +126,7 @@ int orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
   {
     return sign(det);
   }
-  // Within the bound of rounding: the same sum, exactly.
+  // Within the rounding error bound: compute the same sum exactly.
   Expansion exact;
   for (int i = 0; i < 3; ++i)
   {
@@ -154,7 +154,7 @@ int inCircle(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d)
   {
     return sign(det);
   }
-  // Within the bound of rounding: the same sum, exactly.
+  // Within the rounding error bound: compute the same sum exactly.
   Expansion exact;
   for (int i = 0; i < 3; ++i)
   {
@@ -177,7 +177,8 @@ bool segmentsMeet(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d)
       return false;
     }
   }
-  // With boxes that meet, segments meet if neither lies strictly on one side of the other's line.
+  // If their boxes meet, segments meet if neither lies strictly on one side of the line of the
+  // other.
   return orientation(a, b, c) * orientation(a, b, d) <= 0 &&
     orientation(c, d, a) * orientation(c, d, b) <= 0;
 }

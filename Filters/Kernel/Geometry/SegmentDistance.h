@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SegmentDistance.h
- * @brief Squared distances of segments in the plane.
- * Internal: not installed.
+ * @brief Squared distances between segments in the plane. Internal: not installed.
  */
 #ifndef tautline_SegmentDistance_h
 #define tautline_SegmentDistance_h
@@ -13,7 +12,7 @@
 
 namespace tautline
 {
-/// Squared distance of the point p to the segment a-b.
+/// The squared distance of the point p from the segment a-b.
 inline double squaredDistance(Vec2 p, Vec2 a, Vec2 b)
 {
   const Vec2 e = b - a;
@@ -23,7 +22,7 @@ inline double squaredDistance(Vec2 p, Vec2 a, Vec2 b)
   return dot(d, d);
 }
 
-/// Squared distance of the segments a-b and c-d, 0 where they cross.
+/// The squared distance between the segments a-b and c-d, 0 if they cross.
 inline double squaredSegmentDistance(Vec2 a, Vec2 b, Vec2 c, Vec2 d)
 {
   const double c1 = cross(b - a, c - a), c2 = cross(b - a, d - a);

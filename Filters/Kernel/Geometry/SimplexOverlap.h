@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SimplexOverlap.h
- * @brief The intersection of two triangles of the plane, or of two tetrahedra, in pieces.
- * Internal: not installed.
+ * @brief The intersection of two planar triangles, or of two tetrahedra, in pieces. Internal: not
+ * installed.
  *
  * A simplex is cut along the facets of another one into simplices. Their corners are given by
  * barycentric coordinates in both, from which integrals of products of linear functions follow.
@@ -22,16 +22,16 @@
 
 namespace tautline
 {
-/// The corners of a triangle of the plane (N = 3) or of a tetrahedron (N = 4).
+/// The corners of a planar triangle (N = 3) or of a tetrahedron (N = 4).
 template <int N>
 using SimplexCorners = std::array<std::conditional_t<N == 3, Vec2, Vec3>, N>;
 
-/// The area of a triangle, positive if it is counter-clockwise.
+/// The area of a triangle, positive if it is counterclockwise.
 inline double simplexSize(const SimplexCorners<3>& x)
 {
   return 0.5 * cross(x[1] - x[0], x[2] - x[0]);
 }
-/// The volume of a tetrahedron, positive if 0 1 2 are counter-clockwise seen from 3.
+/// The volume of a tetrahedron, positive if 0 1 2 are counterclockwise as seen from 3.
 inline double simplexSize(const SimplexCorners<4>& x)
 {
   return dot(cross(x[1] - x[0], x[2] - x[0]), x[3] - x[0]) / 6.0;
@@ -94,8 +94,8 @@ struct SharedPoint
 
 /**
  * @class tautline::SimplexOverlap
- * @brief What two simplices have in common. The smaller one is cut, so that the coordinates of its
- * corners in the larger one, and with them the rounding, are small.
+ * @brief The intersection of two simplices. The smaller one is cut, so that the coordinates of its
+ * corners in the larger one, and thus the rounding errors, are small.
  */
 template <int N>
 class SimplexOverlap
@@ -105,7 +105,7 @@ public:
   using Point = SharedPoint<N>;
   using Piece = std::array<const Point*, N>;
 
-  /// Simplices of any orientation, whose size is not 0.
+  /// Simplices of any orientation and nonzero size.
   SimplexOverlap(const Corners& x, const Corners& y)
   {
     const double sizeOfX = simplexSize(x), sizeOfY = simplexSize(y);
@@ -127,7 +127,7 @@ public:
     }
   }
 
-  /// Whether it was found without cutting that nothing is in common.
+  /// Whether the simplices were found to be disjoint without cutting.
   bool disjoint() const { return this->Disjoint; }
 
   /**
@@ -202,7 +202,7 @@ private:
   template <class Visit>
   void cut(Piece x, int facet, const Visit& visit) const
   {
-    // Corners inside come first.
+    // Corners inside are first.
     int inside = N;
     for (; facet < N; ++facet)
     {
@@ -273,7 +273,7 @@ private:
 
   std::array<Point, N> Start; ///< `first` in the simplex that is cut, `second` in the other one
   double Size = 0.0;          ///< of the simplex that is cut
-  bool Swapped = false;       ///< whether that is the second one
+  bool Swapped = false;       ///< whether the second one is cut
   bool Disjoint = false;
 };
 }

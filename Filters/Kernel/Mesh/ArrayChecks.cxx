@@ -12,8 +12,8 @@ namespace tautline
 {
 namespace
 {
-/// The first i below count with bad(i). The test of a chunk has no branch and is vectorised; only a
-/// chunk that fails is searched for the place.
+/// The first i below count with bad(i). The test of a chunk is branch-free and vectorized; only a
+/// failing chunk is searched for the position.
 template <class Bad>
 Index findFirst(Index count, int threads, const Bad& bad)
 {
@@ -43,8 +43,8 @@ Index findFirst(Index count, int threads, const Bad& bad)
   return first < count ? first.load() : -1;
 }
 
-/// The number of points of a cell, -1 where the offsets descend; the difference of offsets of any
-/// value would wrap.
+/// The number of points of a cell, -1 if the offsets decrease; the difference of arbitrary offsets
+/// could overflow.
 template <class Id>
 Index sizeOf(const Id* offsets, Index cell)
 {

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ArrayChecks.h
- * @brief Searches the raw arrays of a mesh for what must not be in them.
- * Internal: not installed.
+ * @brief Searches the raw arrays of a mesh for invalid values. Internal: not installed.
  *
- * Linear and threaded: each array is read once. The result is the first place, whatever the number
- * of threads, or -1. Nothing is dereferenced, so that arrays of any content may be given.
- * `Id` is std::int32_t or std::int64_t, `Real` is float or double.
+ * Linear and threaded: each array is read once. The result is the first position, for any number of
+ * threads, or -1. Ids are not dereferenced, so that arrays with any content are allowed. `Id` is
+ * std::int32_t or std::int64_t, `Real` is float or double.
  */
 #ifndef tautline_ArrayChecks_h
 #define tautline_ArrayChecks_h
@@ -39,8 +38,8 @@ struct CellSizes
 };
 
 /**
- * @brief The first cell whose size, offsets[i + 1] - offsets[i], its type does not allow; a
- * negative size is allowed by none.
+ * @brief The first cell whose size, offsets[i + 1] - offsets[i], its type does not allow; negative
+ * sizes are never allowed.
  * @param offsets cells + 1 values
  * @param types one value per cell
  */

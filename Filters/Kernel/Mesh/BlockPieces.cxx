@@ -51,7 +51,7 @@ BlockBox boxOf(const BlockPiece& piece)
   return box;
 }
 
-/// The facets of the boundary that may be those of another block, too, filed under their homes.
+/// The boundary facets that another block may also have, grouped by home rank.
 std::vector<std::vector<BlockFacet>> facetsToSend(
   const RankGroup& group, const std::vector<BlockPiece>& pieces, const std::vector<BlockBox>& boxes)
 {
@@ -62,7 +62,7 @@ std::vector<std::vector<BlockFacet>> facetsToSend(
     const RankPiece places = { &mesh, nullptr, nullptr };
     const auto meetsOther = [&](Index point)
     {
-      const Vec3 x = pointOf(mesh.view(), point); // one that is not finite is in no box
+      const Vec3 x = pointOf(mesh.view(), point); // nonfinite points are outside every box
       return std::any_of(boxes.begin(), boxes.end(),
         [&](const BlockBox& box) { return box.block != piece.block && box.contains(x); });
     };
@@ -99,7 +99,7 @@ std::vector<int> connectedBlocks(
     [&](const SeamPlace& one, const SeamPlace& other)
     {
       const BlockFacet &a = facets[one.rank][one.number], &b = facets[other.rank][other.number];
-      // Cells on the two sides walk round it in opposite senses.
+      // Cells on the two sides traverse it in opposite directions.
       if (a.block != b.block && (!sided || a.forward != b.forward))
       {
         pairs.push_back({ std::min(a.block, b.block), std::max(a.block, b.block) });

@@ -13,7 +13,7 @@ Boundary Mesh::boundary() const
     [&](Index smallest, const FacetUse* uses, Index count)
     {
       result.nonManifold += count > 2;
-      // Facets of three or more cells count as boundary too: they must not move.
+      // Facets of three or more cells are treated as boundary: they must not move.
       if (count != 2)
       {
         result.facets += count == 1;

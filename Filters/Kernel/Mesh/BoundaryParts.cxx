@@ -32,14 +32,14 @@ struct Part
   double size;
 };
 
-/// Replaces the boxes of the parts by those of all ranks.
+/// Replaces the boxes of the parts by their union over all ranks.
 void uniteBoxes(RankGroup& group, std::vector<PartBox>& boxes)
 {
   for (const std::vector<PartBox>& list : group.gatherItems(boxes))
   {
     for (std::size_t i = 0; i < list.size(); ++i)
     {
-      if (list[i].low[0] <= list[i].high[0]) // a rank may have no point of a part
+      if (list[i].low[0] <= list[i].high[0]) // a rank may lack points of a part
       {
         boxes[i].add(list[i].low);
         boxes[i].add(list[i].high);
@@ -54,13 +54,14 @@ BoundaryParts boundaryParts(const Mesh& mesh, const Ranks& ranks)
 {
   const MeshView& view = mesh.view();
   const Index n = view.numberOfPoints;
-  // Parts are points joined by boundary facets; components of the mesh, those joined by any facet.
+  // Parts are points joined by boundary facets; components of the mesh are points joined by any
+  // facet.
   UnionFind facets(n), pieces(n);
   std::vector<unsigned char> onBoundary(n, 0), used(n, 0);
   FacetTable(mesh).forEachFacet(
     [&](Index first, const FacetUse* use, Index count)
     {
-      // All cells are here only of the facets at an own point.
+      // Only facets at an owned point have all their cells on this rank.
       bool own = ranks.owns(first);
       for (const Index other : use->others)
       {

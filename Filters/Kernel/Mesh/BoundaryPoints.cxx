@@ -11,15 +11,15 @@ namespace tautline
 {
 namespace
 {
-/// What the facets leave at a point.
+/// The marks of the facets at a point.
 struct Mark
 {
   std::uint64_t parity = 0; ///< exclusive or of their numbers
-  std::uint64_t sum = 0;    ///< of their numbers with the sign of the sense
+  std::uint64_t sum = 0;    ///< of their numbers, with the sign of the orientation
   bool any() const { return this->parity != 0 || this->sum != 0; }
 };
 
-/// A number that changes its sign if the order is reversed, and not if it is rotated.
+/// A number that changes its sign if the order is reversed, but not if it is rotated.
 inline std::uint64_t signedNumber(const std::uint64_t* number, const int* member, int size)
 {
   std::uint64_t sum = 0;
@@ -31,7 +31,7 @@ inline std::uint64_t signedNumber(const std::uint64_t* number, const int* member
   return sum;
 }
 
-/// What the facets of a cell leave at its nodes.
+/// Adds the marks of the facets of a cell at its nodes.
 void addMarks(const CellTopology& t, const Index* node, std::vector<Mark>& marks)
 {
   std::uint64_t number[MaxNodes];
@@ -45,7 +45,7 @@ void addMarks(const CellTopology& t, const Index* node, std::vector<Mark>& marks
   {
     const int size = t.dimension == 3 ? t.faceSizes[f] : 2;
     const int* member = t.dimension == 3 ? t.faceNodes[f].data() : t.edgeNodes[f].data();
-    std::uint64_t facet = 0; // the same for each order of the nodes
+    std::uint64_t facet = 0; // independent of the order of the nodes
     for (int k = 0; k < size; ++k)
     {
       facet += number[member[k]];
@@ -65,8 +65,8 @@ void addMarks(const CellTopology& t, const Index* node, std::vector<Mark>& marks
   }
 }
 
-/// The same for tetrahedra, several at once for the vector units: a face has the number of the
-/// vertex opposite to it.
+/// The same for tetrahedra, vectorized over several cells: a face has the number of the vertex
+/// opposite to it.
 void addTetrahedra(
   const MeshView& view, const CellBlock& block, Index begin, Index end, std::vector<Mark>& marks)
 {
@@ -115,7 +115,7 @@ void addTetrahedra(
   }
 }
 
-/// The same for triangles and quadrilaterals, as addMarks() has them.
+/// The same for triangles and quadrilaterals, consistent with addMarks().
 template <int Nodes>
 void addPolygons(
   const MeshView& view, const CellBlock& block, Index begin, Index end, std::vector<Mark>& marks)
@@ -168,8 +168,8 @@ int dimensionOf(const Mesh& mesh)
   return mesh.dimension() == Dimension::Volume ? 3 : 2;
 }
 
-/// Calls visit(cell, its type, its nodes) for a part of the cells of the mesh's dimension, the
-/// `part`-th of `parts`.
+/// Calls visit(cell, its type, its nodes) for the `part`-th of `parts` parts of the cells of the
+/// mesh dimension.
 template <class Visit>
 void forEachElementOfPart(const Mesh& mesh, Index part, Index parts, const Visit& visit)
 {
@@ -186,7 +186,7 @@ void forEachElementOfPart(const Mesh& mesh, Index part, Index parts, const Visit
   }
 }
 
-/// Adds what the facets of a part of each block's cells, the `part`-th of `parts`, leave.
+/// Adds the marks of the facets of the `part`-th of `parts` parts of the cells of each block.
 void addMarksOfPart(const Mesh& mesh, int part, int parts, std::vector<Mark>& marks)
 {
   const MeshView& view = mesh.view();
@@ -219,8 +219,8 @@ void addMarksOfPart(const Mesh& mesh, int part, int parts, std::vector<Mark>& ma
   }
 }
 
-/// Each part has marks of its own, which are then combined: sums modulo 2^64 and exclusive or do
-/// not depend on their order.
+/// Each part has separate marks, which are then combined: sums modulo 2^64 and exclusive or do not
+/// depend on their order.
 std::vector<Mark> marksOf(const Mesh& mesh, int threads)
 {
   const Index points = mesh.view().numberOfPoints;
@@ -254,7 +254,7 @@ struct KeyedCell
   Index cell;
 };
 
-/// Adds those of some cells that have the same points as another one with a smaller id.
+/// Adds the cells of a group that have the same points as a cell with a smaller id.
 void addDuplicates(
   const Mesh& mesh, std::vector<KeyedCell>& cells, std::vector<DuplicateCell>& duplicates)
 {
@@ -284,12 +284,12 @@ void addDuplicates(
   }
 }
 
-/// The duplicate cells among those of whose points `least` or more satisfy a condition.
+/// The duplicate cells among the cells with at least `least` points that satisfy a condition.
 template <class Condition>
 std::vector<DuplicateCell> duplicatesWhere(
   const Mesh& mesh, int least, int threads, const Condition& condition)
 {
-  // Cells with the same key are of one group, whichever part of the cells they are in.
+  // Cells with the same key belong to one group, regardless of their part.
   const int parts = numberOfParts(mesh.view().numberOfCells, threads);
   using Groups = std::vector<std::vector<KeyedCell>>;
   std::vector<Groups> groups(parts, Groups(parts));
@@ -341,13 +341,14 @@ MeshSkin findSkin(const Mesh& mesh, int threads)
     const std::vector<Mark> marks = marksOf(mesh, threads);
     std::transform(
       marks.begin(), marks.end(), boundary.begin(), [](const Mark& mark) { return mark.any(); });
-    // Else duplicate cells, or cells that are listed in opposite senses: their two uses of a facet
-    // have no parity, but a sum.
+    // Otherwise there are duplicate cells or cells with opposite point orders: the parity of their
+    // two uses of a facet vanishes, but not the sum.
     consistent = std::all_of(marks.begin(), marks.end(),
       [](const Mark& mark) { return (mark.parity == 0) == (mark.sum == 0); });
   }
-  // A region of duplicates has facets of three cells, or of two in the same sense, around it: their
-  // points are marked, as if they were on a boundary. One of a volume has three points or more.
+  // A region of duplicates is surrounded by facets of three cells, or of two cells with the same
+  // orientation: their points are marked as if they were on a boundary. Such a facet of a volume
+  // has at least three points.
   const int ofFacet = dimensionOf(mesh);
   const auto marked = [&boundary](Index point) { return boundary[point] != 0; };
   const bool closed = std::find(boundary.begin(), boundary.end(), 1) == boundary.end();
@@ -365,7 +366,8 @@ MeshSkin findSkin(const Mesh& mesh, int threads)
 //------------------------------------------------------------------------------
 std::vector<char> boundaryPoints(const Mesh& mesh, int threads)
 {
-  // On surfaces more than two cells often meet at an edge, which only the facets show.
+  // On surfaces, more than two cells often meet at an edge, which can only be detected from the
+  // facets.
   return mesh.dimension() == Dimension::Surface ? mesh.boundary().isBoundaryPoint
                                                 : findSkin(mesh, threads).boundaryPoints;
 }

@@ -12,15 +12,16 @@
 namespace tautline
 {
 /**
- * @brief One flag per point: on an edge (2D) or face (3D) that not exactly two cells share. Of
- * cells with the same points the first one counts.
+ * @brief One flag per point: nonzero on an edge (2D) or face (3D) that is not shared by exactly two
+ * cells. Only the first of several cells with the same points is used.
  *
- * Each facet has a random 64-bit number, which changes its sign with the sense of walking round it.
- * At each point the numbers of its facets are added up, and combined by exclusive or without the
- * sign; both vanish where each facet occurs twice, in opposite senses: no sorting. Where only one
- * of them vanishes (duplicate cells, cells listed in opposite senses), and for surfaces, on which
- * more than two cells often meet, Mesh::boundary() is used. In planar and volume meshes a boundary
- * point is overlooked with probability 2^-60, or if its facets have two cells on each side.
+ * Each facet has a random 64-bit number, whose sign changes with the orientation of the facet. At
+ * each point, the numbers of its facets are summed and, without sign, combined by exclusive or;
+ * both results vanish if each facet occurs twice, with opposite orientations, so that no sorting is
+ * needed. If only one of them vanishes (duplicate cells, inconsistent point orders), and for
+ * surfaces, on which more than two cells often meet, Mesh::boundary() is used. In planar and volume
+ * meshes, a boundary point is missed with probability 2^-60, or if its facets have two cells on
+ * each side.
  */
 TAUTLINE_KERNEL_EXPORT std::vector<char> boundaryPoints(const Mesh& mesh, int threads = 1);
 
@@ -31,21 +32,22 @@ struct DuplicateCell
   Index original; ///< the first cell with these points
 };
 
-/// What findSkin() found.
+/// The result of findSkin().
 struct MeshSkin
 {
-  std::vector<char> boundaryPoints; ///< as boundaryPoints() gives them
-  /// In increasing order; of supported types and the mesh's dimension, quadratic ones by their
+  std::vector<char> boundaryPoints; ///< as returned by boundaryPoints()
+  /// In increasing order; of supported types and the mesh dimension; quadratic cells by their
   /// corners.
   std::vector<DuplicateCell> duplicates;
-  /// Whether at each point the two uses of a facet are in opposite senses. Else there are duplicate
-  /// cells, cells listed in opposite senses, or parts of the mesh overlap, see findOverlap().
+  /// Whether, at each point, the two uses of a facet have opposite orientations. If not, there are
+  /// duplicate cells, cells with opposite point orders, or overlapping parts of the mesh, see
+  /// findOverlap().
   bool consistent = true;
 };
 
 /**
- * @brief The boundary points and the duplicate cells. Overlooked are duplicates inside that cancel
- * out at each of their facets: pairs of duplicates of one cell, one in each sense.
+ * @brief The boundary points and the duplicate cells. Interior duplicates that cancel out at each
+ * of their facets are missed: pairs of duplicates of one cell with opposite orientations.
  */
 TAUTLINE_KERNEL_EXPORT MeshSkin findSkin(const Mesh& mesh, int threads = 1);
 }

@@ -22,11 +22,11 @@ struct Directions
   double minCosine = 1; ///< between a facet and the sum
   double bend = 0;      ///< largest sine of the angle between a facet and the sum of its kind
   bool faulty = false;  ///< a facet without size, or of three cells
-  int kinds = 0;        ///< 3: three or more, or something that forbids to slide
+  int kinds = 0;        ///< 3: three or more, or sliding is not possible
   int facets = 0;
 };
 
-/// Files a facet with the direction `area`, whose length is its weight.
+/// Adds a facet with the direction `area`, whose length is its weight.
 void add(Directions& d, const Vec3& area, double cosine)
 {
   const double length = norm(area);
@@ -77,7 +77,8 @@ int walk(Index smallest, const FacetUse& use, Index* nodes)
   return size;
 }
 
-/// An edge's vector in its cell's sense, a face's normal times twice its area.
+/// The vector of an edge in the orientation of its cell, or the normal of a face times twice its
+/// area.
 Vec3 direction(const MeshView& view, const FacetUse& use, const Index* nodes, int size)
 {
   const Vec3 a = pointOf(view, nodes[0]), b = pointOf(view, nodes[1]);
@@ -137,8 +138,8 @@ void classify(Index i, const Directions& d, bool volume, double cosine, double s
 }
 
 //------------------------------------------------------------------------------
-/// How much the directions (normals or lines, of either sign) of points differ: their outer
-/// products have a box.
+/// The variation of the directions (normals or lines, of either sign) of points: a box around their
+/// outer products.
 struct DirectionBox
 {
   std::array<double, 6> low = { HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL };
@@ -158,7 +159,7 @@ struct DirectionBox
       this->high[k] = std::max(this->high[k], to[k]);
     }
   }
-  /// The sine of the angle between two directions, squared; of several, about the largest one.
+  /// The squared sine of the angle between two directions; for several, approximately the largest.
   double sine2() const
   {
     double sum = 0;
@@ -177,9 +178,9 @@ Vec3 vectorAt(const std::vector<double>& all, Index i)
 }
 
 /**
- * The boundary of a mesh: what each point may do by the facets around it, and then by the parts of
- * the boundary that it slides in. A fine circle bends by a degree at no point, and still is none to
- * slide off along its tangents.
+ * Classifies the boundary points of a mesh by the facets around them, and then by the parts of the
+ * boundary in which they slide. A fine circle bends by less than a degree at every point, but
+ * points must still not slide off it along its tangents.
  */
 class ShapeFinder
 {
@@ -190,13 +191,13 @@ public:
   /// One number per point: whether it is bent.
   std::vector<unsigned char> bent() const;
   /// Joins points of a facet that slide in nearly the same directions.
-  /// @param counts whether a facet with these nodes counts
+  /// @param counts whether to use a facet with these nodes
   template <class Counts>
   UnionFind joined(const Counts& counts);
   /// Holds the bent points of parts (one per point, or -1) whose directions differ too much.
   void holdBent(const std::vector<unsigned char>& bent, const std::vector<Index>& part,
     const std::vector<DirectionBox>& boxes);
-  /// The direction a point slides in, or that it slides at a right angle to; 0: neither.
+  /// The direction in which, or perpendicular to which, a point slides; 0: neither.
   Vec3 directionOf(Index i) const
   {
     return vectorAt(this->Shape.planes, i) + vectorAt(this->Shape.lines, i);
@@ -217,7 +218,7 @@ private:
   const MeshView& View;
   std::vector<Facet> Facets;
   const bool Volume, Smooth;
-  // Rounding makes even the faces of a cube differ a little.
+  // The limits allow for rounding, which affects even the faces of a cube.
   const double Cosine, SmoothCosine, Sine2;
   std::vector<Directions> Around;
   BoundaryShape Shape;
@@ -298,8 +299,8 @@ void ShapeFinder::findFacets(const Mesh& mesh)
 
 std::vector<unsigned char> ShapeFinder::bent() const
 {
-  // Sine; more than rounding of coordinates in double precision, and less than a circle of a
-  // hundred thousand edges bends.
+  // Sine; above the rounding of double-precision coordinates, and below the bend of a circle of a
+  // hundred thousand edges.
   constexpr double straight = 1e-5;
   std::vector<unsigned char> result;
   for (const Directions& here : this->Around)
@@ -359,17 +360,18 @@ BoundaryShape boundaryShape(
 {
   if (!(flatAngle >= 0 && flatAngle <= 90))
   {
-    throw Error("The angle up to which the boundary counts as flat is " +
+    throw Error("The angle up to which the boundary is treated as flat is " +
       std::to_string(flatAngle) + " degrees; it must be between 0 and 90.");
   }
   if (!(featureAngle >= 0 && featureAngle <= 180))
   {
-    throw Error("The angle from which on an edge of the boundary is sharp is " +
+    throw Error("The angle above which an edge of the boundary is sharp is " +
       std::to_string(featureAngle) + " degrees; it must be between 0 and 180.");
   }
   const Index points = mesh.view().numberOfPoints;
   ShapeFinder finder(mesh, flatAngle, featureAngle);
-  // Of the points that this rank owns all facets are here; the others are as their owners say.
+  // All facets of the owned points are on this rank; the other points are classified by their
+  // owners.
   BoundaryShape& shape = finder.shape();
   ranks.exchange(shape.fixed.data());
   ranks.exchange(shape.planes.data(), 3);

@@ -15,7 +15,7 @@
 
 namespace tautline
 {
-/// Where cells are gathered from: a block of a mesh.
+/// The block of a mesh from which cells are gathered.
 struct CellSource
 {
   const Mesh* mesh = nullptr;
@@ -26,7 +26,7 @@ struct CellSource
 /// Up to PacketWidth cells and their vertices.
 struct CellVertices
 {
-  /// The last one repeated to fill the packet; in ElementSum::run() only on request.
+  /// The last one is repeated to fill the packet; in ElementSum::run() only on request.
   Index cells[PacketWidth];
   int count = 0;
   Packet points[MaxNodes][3];
@@ -54,7 +54,7 @@ void withNodes(const CellTopology& topology, const Work& work)
   }
 }
 
-/// The nodes of each cell of a batch, in the connectivity.
+/// Pointers to the nodes of each cell of a batch in the connectivity.
 using BatchNodes = const Index* [PacketWidth];
 
 /// Finds the nodes of cells [begin, begin + count) of a block; order maps positions if not null.
@@ -72,7 +72,7 @@ inline void locate(const CellSource& source, const Index* order, Index begin, in
   batch.count = count;
 }
 
-/// Loads the vertices of the cells of a batch, of which `nodes` has the numbers.
+/// Loads the vertices of the cells of a batch, with the node numbers `nodes`.
 template <int Nodes, class Numbers>
 inline __attribute__((always_inline)) void loadNodes(
   const CellSource& source, const double* points, const Numbers& nodes, CellVertices& batch)
@@ -95,7 +95,7 @@ inline __attribute__((always_inline)) void loadNodes(
   }
 }
 
-/// Scales cells that are extremely small or large, by powers of two: exactly.
+/// Scales extremely small or large cells exactly, by powers of two.
 template <int Nodes>
 void normalizeExtents(CellVertices& batch)
 {

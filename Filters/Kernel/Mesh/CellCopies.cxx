@@ -12,7 +12,7 @@ namespace tautline
 {
 namespace
 {
-/// The points of a facet in the order in which the cell walks round it, from the smallest one.
+/// The points of a facet in the order in which the cell traverses it, from the smallest one.
 struct Walk
 {
   std::array<Index, MaxFaceNodes> points;
@@ -37,14 +37,14 @@ Walk walkOf(const CellTopology& t, int facet, const Index* nodes, bool reversed)
   {
     std::reverse(begin, end);
   }
-  if (walk.size > 2) // the order of an edge is its sense
+  if (walk.size > 2) // the order of an edge is its orientation
   {
     std::rotate(begin, std::min_element(begin, end), end);
   }
   return walk;
 }
 
-/// A cell with a number that depends on its places only, not on their order.
+/// A cell with a number that depends only on its point locations, not on their order.
 struct PlacedCell
 {
   std::uint64_t key;
@@ -61,8 +61,8 @@ CellPlaces placesOf(const MeshView& view, const std::vector<Index>& placeOf, Ind
   return places;
 }
 
-/// The cells of a block with a point that has others at its place, those with one key together;
-/// not those with two points at one place.
+/// The cells of a block with a point that coincides with others, grouped by key; without cells with
+/// two coincident points.
 std::vector<PlacedCell> placedCells(const Mesh& mesh, const CellBlock& block,
   const std::vector<Index>& placeOf, const std::vector<char>& several, const unsigned char* ghosts)
 {
@@ -131,7 +131,8 @@ std::vector<unsigned char> findCopies(const Mesh& mesh, const std::vector<Index>
   const std::vector<char>& several, const unsigned char* reversed, const unsigned char* ghosts)
 {
   const MeshView& view = mesh.view();
-  const bool onSurface = mesh.dimension() == Dimension::Surface; // where no sense is the right one
+  // where no orientation is preferred
+  const bool onSurface = mesh.dimension() == Dimension::Surface;
   std::vector<unsigned char> copies;
   for (const CellBlock& block : mesh.blocks())
   {

@@ -18,7 +18,8 @@ struct SentPoint
   double x[3];
 };
 
-constexpr std::size_t CellHead = 2; // numbers in front of the points of a cell: type, their number
+// entries before the points of a cell: its type and number of points
+constexpr std::size_t CellHead = 2;
 }
 
 //------------------------------------------------------------------------------
@@ -32,7 +33,7 @@ std::vector<int> ownersByTree(RankGroup& group, const MeshView& piece, const uns
   };
   std::vector<unsigned char> use;
   std::vector<Vec3> places;
-  // 0 and -0 are one place.
+  // 0 and -0 are the same location.
   const auto placeOf = [&piece](Index p) { return pointOf(piece, p) + Vec3{ 0, 0, 0 }; };
   use.assign(static_cast<std::size_t>(piece.numberOfPoints), Unused);
   for (Index cell = 0; cell < piece.numberOfCells; ++cell)
@@ -114,7 +115,7 @@ CellDivision::CellDivision(
 }
 
 //------------------------------------------------------------------------------
-/// Files the cells and their points under the ranks that get them.
+/// Groups the cells and their points by the receiving rank.
 void CellDivision::file(const MeshView& piece, const std::vector<int>& owners)
 {
   const auto ranks = static_cast<std::size_t>(this->Group.size());
@@ -130,7 +131,7 @@ void CellDivision::file(const MeshView& piece, const std::vector<int>& owners)
     }
     this->PieceCells[rank < 0 ? self : rank].push_back(cell);
   }
-  // Each point once per rank: `last` is the one that it was listed for.
+  // List each point once per rank: `last` is the last rank for which it was listed.
   std::vector<int> last(static_cast<std::size_t>(piece.numberOfPoints), -1);
   for (int rank = 0; rank < this->Group.size(); ++rank)
   {
@@ -158,7 +159,8 @@ void CellDivision::file(const MeshView& piece, const std::vector<int>& owners)
 }
 
 //------------------------------------------------------------------------------
-/// The cells that go to each rank: type, number of points, and where these are in its list.
+/// The cells that go to each rank: type, number of points, and the positions of the points in its
+/// list.
 std::vector<std::vector<Index>> CellDivision::cellLists(const MeshView& piece) const
 {
   Lists lists;
@@ -186,7 +188,7 @@ std::vector<std::vector<Index>> CellDivision::cellLists(const MeshView& piece) c
 }
 
 //------------------------------------------------------------------------------
-/// Takes cells from a rank. @param points of the part, by the places in its list
+/// Adds the cells from a rank. @param points of the part, by position in its list
 void CellDivision::take(const std::vector<Index>& cells, const std::vector<Index>& points)
 {
   for (std::size_t i = 0; i < cells.size();)

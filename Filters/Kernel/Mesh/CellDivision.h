@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CellDivision.h
- * @brief Cells that ranks send each other so that each has a part, and values that go to the parts
- * and back to the pieces.
- * Internal: not installed.
+ * @brief Redistributes cells so that each rank has a part, and transfers values to the parts and
+ * back to the pieces. Internal: not installed.
  */
 #ifndef tautline_CellDivision_h
 #define tautline_CellDivision_h
@@ -16,29 +15,29 @@
 namespace tautline
 {
 /**
- * @brief The rank of each point by a k-d tree of the points of cells: boxes of about as many.
- * Collective.
- * @param ghosts one flag per cell, nonzero for those whose points do not count; or null
- * @return per point of the piece; -1 for one that no cell has, or that is not finite
+ * @brief The rank of each point, by a k-d tree of the points of cells: boxes of about equal numbers
+ * of points. Collective.
+ * @param ghosts one flag per cell: nonzero if its points are ignored; or null
+ * @return per point of the piece; -1 if no cell has it or it is not finite
  */
 TAUTLINE_KERNEL_EXPORT std::vector<int> ownersByTree(
   RankGroup& group, const MeshView& piece, const unsigned char* ghosts);
 
 /**
  * @class tautline::CellDivision
- * @brief The cells of the pieces of a mesh in parts: each goes to one rank, with its points.
+ * @brief Divides the cells of the pieces of a mesh into parts: each goes to one rank, with its
+ * points.
  *
  * A cell goes to the highest of the ranks that own its points; then the lowest rank that has a
- * point, which has its rows (see PointNumbering), is the owner of nearly every point. A cell whose
- * points have no owner stays, and so do points without a cell. A part has the cells in the order of
- * the ranks they come from, and of their pieces. All methods are collective but for const
- * accessors.
+ * point, which has its rows (see PointNumbering), is the owner of nearly every point. Cells whose
+ * points have no owner stay, as do points without a cell. A part has the cells in the order of
+ * their source ranks, then of their pieces. All methods except const accessors are collective.
  */
 class TAUTLINE_KERNEL_EXPORT CellDivision
 {
 public:
   /**
-   * @param piece all cells of this rank, also ghosts, which go like others
+   * @param piece all cells of this rank, including ghosts, which are sent like others
    * @param ids one per point, the same on all ranks for the same point, each once in a piece
    * @param owners one rank per point, or -1; copies of a point may have different ones
    * @param group must outlive this object
@@ -51,25 +50,25 @@ public:
   RankGroup& group() const { return this->Group; }
   /// The part of this rank.
   const MeshView& view() const { return this->View; }
-  /// Of the points of the part; each is there once.
+  /// The ids of the points of the part; each occurs once.
   const std::vector<Index>& ids() const { return this->Ids; }
 
-  /// Values of the pieces, `components` per point, as those of the parts: of the copies of a point
-  /// that of the lowest rank.
+  /// Transfers values of the pieces, `components` per point, to the parts: of the copies of a
+  /// point, the value of the lowest rank is used.
   template <class Value>
   std::vector<Value> pointsToParts(const std::vector<Value>& values, int components) const
   {
     return this->move(
       values, components, this->PiecePoints, this->PartPoints, this->View.numberOfPoints);
   }
-  /// The same of cells.
+  /// The same for cells.
   template <class Value>
   std::vector<Value> cellsToParts(const std::vector<Value>& values, int components) const
   {
     return this->move(
       values, components, this->PieceCells, this->PartCells, this->View.numberOfCells);
   }
-  /// Values of the parts as those of the pieces.
+  /// Transfers values of the parts to the pieces.
   template <class Value>
   std::vector<Value> pointsToPieces(const std::vector<Value>& values, int components) const
   {
@@ -106,7 +105,7 @@ private:
       }
     }
     const std::vector<std::vector<Value>> received = this->Group.exchangeItems(sent);
-    for (std::size_t rank = to.size(); rank-- > 0;) // the lowest one prevails
+    for (std::size_t rank = to.size(); rank-- > 0;) // the lowest rank prevails
     {
       for (std::size_t i = 0; i < to[rank].size(); ++i)
       {

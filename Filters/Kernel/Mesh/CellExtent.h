@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CellExtent.h
- * @brief The sizes of cells that are computed with as they are, and the unit of others.
+ * @brief The cell sizes that need no scaling, and the unit for other sizes.
  */
 #ifndef tautline_CellExtent_h
 #define tautline_CellExtent_h
@@ -12,16 +12,16 @@
 namespace tautline
 {
 /**
- * @brief Cells whose longest extent along an axis is between these, 5e-20 and 2e19, are computed
- * with in the unit of the mesh. Products of twelve lengths of others could overflow or vanish.
+ * @brief Cells whose longest extent along an axis is between these, 5e-20 and 2e19, are processed
+ * in mesh units. For other cells, products of twelve lengths could overflow or underflow.
  */
 constexpr double SmallestExtent = 0x1p-64, LargestExtent = 0x1p64;
 
-/// The power of two to divide coordinates by where cells extend so far: 1 if it is between the
-/// limits above, 0 or not finite.
+/// The power of two by which to divide coordinates of cells of this extent: 1 if it is between the
+/// limits above, 0, or not finite.
 inline double unitOfExtent(double extent)
 {
-  constexpr int farthest = 1022; // so that its reciprocal is normal, too
+  constexpr int farthest = 1022; // so that its reciprocal is also a normal number
   const bool usual = extent > SmallestExtent && extent < LargestExtent;
   return usual || !(extent > 0) || !std::isfinite(extent)
     ? 1.0

@@ -11,10 +11,11 @@ namespace tautline
 {
 namespace
 {
-constexpr Index Enough = 10; // cells of a part, so that it is not a piece of inverted ones
+// number of cells above which a part is not considered a group of inverted elements
+constexpr Index Enough = 10;
 
-/// Cells in the orders that they have, c, and in the opposite ones, c + n: orders that agree are in
-/// one set.
+/// Cells in their given order, c, and in the opposite order, c + n; orders that agree are in one
+/// set.
 class OrderSets
 {
 public:
@@ -31,7 +32,7 @@ public:
   }
   /// The first member of the part of a.
   Index part(Index a) { return std::min(this->Sets.find(a), this->Sets.find(a + this->Count)); }
-  /// Whether the order of a is the opposite one of that of the first member.
+  /// Whether the order of a is opposite to the order of the first member.
   bool opposite(Index a) { return this->Sets.find(a) != this->part(a); }
   /// Whether the part of a has no consistent order.
   bool ambiguous(Index a) { return this->Sets.find(a) == this->Sets.find(a + this->Count); }
@@ -49,19 +50,19 @@ private:
 /// A connected part of a piece, in the order of its first cell.
 struct PiecePart
 {
-  PartSign inOrder;   ///< with all cells in the order of the first
-  PartSign given;     ///< with the cells as they are
+  PartSign inOrder;   ///< with all cells in the order of the first cell
+  PartSign given;     ///< with the cells as given
   Index cells = 0;    ///< of the part
   Index opposite = 0; ///< of these: in the opposite order of the first
   Index first = -1;   ///< the smallest cell
   bool ambiguous = false;
 };
 
-/// A facet on the boundary of a piece, with what its cell tells.
+/// A facet on the boundary of a piece, with the order information of its cell.
 struct OrderFacet : SeamFacet
 {
   Index part;
-  bool opposite; ///< its cell is in the opposite order of its part
+  bool opposite; ///< whether its cell has the opposite order of its part
   signed char validity;
 };
 
@@ -69,22 +70,22 @@ struct OrderFacet : SeamFacet
 struct PartPair
 {
   Index a, b;    ///< numbers of the parts, a not above b
-  bool agree;    ///< the orders of the parts
-  bool doubtful; ///< the cells are neighbours in opposite orders, or overlap
+  bool agree;    ///< whether the orders of the parts agree
+  bool doubtful; ///< whether the cells are neighbors in opposite orders or overlap
   Index facets, disagreeing;
 
   auto key() const { return std::tie(this->a, this->b, this->agree, this->doubtful); }
 };
 
-/// What becomes of a part.
+/// How a part is ordered.
 enum class Turn : char
 {
   Stays,  ///< its cells have the order of the first
-  Turned, ///< they have the opposite one
-  None    ///< all have the order that they are given in
+  Turned, ///< they have the opposite order
+  None    ///< all keep their given order
 };
 
-/// What the first rank tells the others.
+/// The totals that the first rank sends to the others.
 struct OrderTotals
 {
   Index disagreeing = 0, parts = 0, reversedParts = 0;
@@ -104,7 +105,7 @@ public:
   {
   }
 
-  /// @param facets whether to list those on the boundary
+  /// @param facets whether to list the boundary facets
   void find(const Vec3& origin, bool facets);
   std::vector<std::vector<unsigned char>> reverse(const std::vector<Turn>& turns) const;
 
@@ -120,7 +121,7 @@ private:
   const std::vector<const signed char*>& Validity;
   int Dimension;
   bool HaveSigns;
-  std::vector<std::vector<Index>> PartOf;        ///< per piece and cell; -1: of none
+  std::vector<std::vector<Index>> PartOf;        ///< per piece and cell; -1: none
   std::vector<std::vector<unsigned char>> Other; ///< per piece and cell: opposite in its part
 };
 
@@ -207,7 +208,7 @@ void PieceOrders::addPiece(std::size_t number, const Vec3& origin, bool facets)
 }
 
 //------------------------------------------------------------------------------
-/// The flags of the cells to list in the opposite order.
+/// The flags of the cells whose order must be reversed.
 std::vector<std::vector<unsigned char>> PieceOrders::reverse(const std::vector<Turn>& turns) const
 {
   std::vector<std::vector<unsigned char>> reverse;
@@ -229,7 +230,7 @@ std::vector<std::vector<unsigned char>> PieceOrders::reverse(const std::vector<T
 }
 
 //------------------------------------------------------------------------------
-/// Ghost cells get the order of the other cells that they are connected with.
+/// Ghost cells get the order of the cells to which they are connected.
 void PieceOrders::flagGhosts(const RankPiece& piece, std::vector<unsigned char>& flags) const
 {
   const Mesh& mesh = *piece.mesh;
@@ -243,7 +244,7 @@ void PieceOrders::flagGhosts(const RankPiece& piece, std::vector<unsigned char>&
         sets.join(uses[0].cell, uses[1].cell, uses[0].forward != uses[1].forward);
       }
     });
-  std::vector<signed char> firstReversed(cells, -1); // by the first member; -1: not known
+  std::vector<signed char> firstReversed(cells, -1); // by the first member; -1: unknown
   for (Index cell = 0; cell < cells; ++cell)
   {
     if (!piece.ghosts[cell] && !sets.ambiguous(cell))
@@ -262,7 +263,7 @@ void PieceOrders::flagGhosts(const RankPiece& piece, std::vector<unsigned char>&
 }
 
 //------------------------------------------------------------------------------
-/// The pairs of parts that meet at the facets that a rank has got.
+/// The pairs of parts that meet at the facets a rank has received.
 std::vector<PartPair> pairsAt(const std::vector<std::vector<OrderFacet>>& received,
   const std::vector<Index>& firsts, bool sided)
 {
@@ -318,7 +319,7 @@ Index joinParts(OrderSets& sets, const std::vector<PartPair>& pairs, Index disag
       disagreeing += pair.disagreeing;
     }
   }
-  // Of the doubtful ones, those that the others confirm; the rest by the majority.
+  // Doubtful pairs: first use the ones confirmed by others; decide the rest by majority.
   std::vector<PartPair> open;
   Index doubtful = 0;
   for (const PartPair& pair : pairs)
@@ -347,7 +348,7 @@ Index joinParts(OrderSets& sets, const std::vector<PartPair>& pairs, Index disag
   return disagreeing;
 }
 
-/// What the connected parts of the whole mesh tell, and what becomes of those of the pieces.
+/// Decides the order of the connected parts of the whole mesh, and of the parts of the pieces.
 OrderTotals decide(const std::vector<PiecePart>& parts, const std::vector<PartPair>& pairs,
   bool haveSigns, double sign, Index disagreeing, std::vector<Turn>& turns)
 {
@@ -380,7 +381,7 @@ OrderTotals decide(const std::vector<PiecePart>& parts, const std::vector<PartPa
     of.first = of.first < 0 ? parts[p].first : std::min(of.first, parts[p].first);
   }
   turns.assign(count, Turn::None);
-  Index inverted = 0; // parts that are negative as their cells are inverted, not reversed
+  Index inverted = 0; // parts that are negative because their cells are inverted, not reversed
   for (Index p = 0; p < count; ++p)
   {
     const PiecePart& of = whole[sets.part(p)];
@@ -400,7 +401,7 @@ OrderTotals decide(const std::vector<PiecePart>& parts, const std::vector<PartPa
     bool turn = haveSigns ? of.inOrder.reversed(sign) : 2 * of.opposite > of.cells;
     if (haveSigns && of.opposite == 0)
     {
-      // Nothing but the sign of the part tells its order. A few cells may be inverted ones.
+      // Only the sign of the part determines its order. A few cells may be inverted elements.
       const bool many = of.cells >= Enough && of.inOrder.majority == -of.cells;
       inverted += negative && turn && !many;
       turn = turn && many;
@@ -409,20 +410,20 @@ OrderTotals decide(const std::vector<PiecePart>& parts, const std::vector<PartPa
     totals.reversed +=
       turns[p] == Turn::Turned ? parts[p].cells - parts[p].opposite : parts[p].opposite;
   }
-  // Where all parts are negative, the mesh is reversed, however few cells it has.
+  // If all parts are negative, the mesh is reversed, even if it has few cells.
   totals.reversedParts -= totals.reversedParts < totals.parts ? inverted : 0;
   return totals;
 }
 
-/// What orderOf() looks for.
+/// The goal of orderOf().
 enum class Search
 {
-  Orientation,    ///< two cells on one side of a facet are neighbours in opposite orders
-  OrderOnceMixed, ///< they may be cells that overlap instead; the order only of a mixed mesh
-  Order           ///< as Orientation; the order of any mesh
+  Orientation,    ///< two cells on one side of a facet are neighbors in opposite orders
+  OrderOnceMixed, ///< they may also be overlapping cells; the order is only found for a mixed mesh
+  Order           ///< as Orientation; the order is found for any mesh
 };
 
-/// The valid and inverted cells of the whole mesh's dimension, without ghosts.
+/// Counts the valid and inverted cells of the dimension of the whole mesh, without ghosts.
 void countSigns(const std::vector<RankPiece>& pieces,
   const std::vector<const signed char*>& validity, int dimension, Orientation& found)
 {
@@ -441,7 +442,7 @@ void countSigns(const std::vector<RankPiece>& pieces,
   }
 }
 
-/// Adds what other ranks have found to the parts of one, and decides on the first rank.
+/// Combines the parts of all ranks, and decides on the first rank.
 /// @param turns of the parts of this rank
 OrderTotals decideTogether(RankGroup& group, const PieceOrders& own, bool haveSigns,
   bool overlapping, double sign, std::vector<Turn>& turns)
@@ -480,7 +481,7 @@ OrderTotals decideTogether(RankGroup& group, const PieceOrders& own, bool haveSi
 }
 
 /// The order of the whole mesh.
-/// @param group null: of one piece, whose points at the same place are not one
+/// @param group null: one piece, whose coincident points are not identified
 RankOrder orderOf(RankGroup* group, const std::vector<RankPiece>& pieces,
   const std::vector<const signed char*>& validity, Search search)
 {
@@ -516,7 +517,7 @@ RankOrder orderOf(RankGroup* group, const std::vector<RankPiece>& pieces,
     return result;
   }
 
-  // Signs differ (a tangled or a mixed mesh), or there are none (a surface): compare neighbours.
+  // If signs differ (a tangled or mixed mesh) or do not exist (a surface), compare neighbors.
   const double sign = mirrored ? -1.0 : 1.0;
   PieceOrders own(pieces, validity, dimension, haveSigns);
   own.find(
@@ -601,8 +602,8 @@ void reverseCell(CellType type, Index* nodes)
       std::swap_ranges(nodes, nodes + 3, nodes + 3);
       return;
     default:
-      throw Error("Only triangles, quadrilaterals, tetrahedra, hexahedra, wedges and pyramids can "
-                  "be listed in the opposite order.");
+      throw Error("Only triangles, quadrilaterals, tetrahedra, hexahedra, wedges and pyramids "
+                  "can be reversed.");
   }
 }
 }

@@ -73,7 +73,7 @@ CellTopology complete(const Shape& s)
   }
   for (int c = 0; c < t.corners; ++c)
   {
-    // In 2D the third column is the normal, so that one 3 x 3 inverse serves both dimensions.
+    // In 2D, the third column is the normal, so that one 3 x 3 inverse serves both dimensions.
     double w[3][3] = { { 0, 0, 0 }, { 0, 0, 0 }, { 0, 0, 1 } };
     double lengths = 1.0;
     for (int k = 0; k < s.dimension; ++k)
@@ -119,7 +119,8 @@ std::array<CellTopology, NumberOfCellTypes> makeTopologies()
         { 4, 5, 6, 7 } },
       { { 0, 1, 3, 4 }, { 1, 2, 0, 5 }, { 2, 3, 1, 6 }, { 3, 0, 2, 7 }, { 4, 7, 5, 0 },
         { 5, 4, 6, 1 }, { 6, 5, 7, 2 }, { 7, 6, 4, 3 } } }),
-    // VTK's wedge: the triangle 0 1 2 is counter-clockwise seen from outside, that is from below.
+    // VTK's wedge: the triangle 0 1 2 is counterclockwise as seen from outside, that is, from
+    // below.
     complete({ CellType::Wedge, "wedge", "wedges", 3, 0.5, false,
       { { 0, 0, 0 }, { 0.5, h, 0 }, { 1, 0, 0 }, { 0, 0, 1 }, { 0.5, h, 1 }, { 1, 0, 1 } },
       { { 0, 1 }, { 1, 2 }, { 2, 0 }, { 3, 4 }, { 4, 5 }, { 5, 3 }, { 0, 3 }, { 1, 4 }, { 2, 5 } },
@@ -158,7 +159,7 @@ const CellTopology& topology(CellType type)
   const int index = topologyIndex(type);
   if (index < 0)
   {
-    throw Error("No topology for this cell type: Tautline computes with triangles, quadrilaterals, "
+    throw Error("No topology for this cell type: Tautline supports triangles, quadrilaterals, "
                 "tetrahedra, hexahedra, wedges and pyramids.");
   }
   return topologies()[index];

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CellTopology.h
- * @brief The cell types Tautline computes with: local numbering, edges, faces, corners, ideal
+ * @brief The cell types that Tautline supports: local numbering, edges, faces, corners, ideal
  * shape.
  *
- * Local numbering and type codes are VTK's, so that a VTK cell array is used as it is. z points up.
+ * Local numbering and type codes are the same as in VTK, so that a VTK cell array is used directly.
+ * z points up.
  *
  *     Triangle                          Quadrilateral
  *
@@ -43,7 +44,7 @@
  *           03 14 25                    faces 0321 014 124 234 304
  *     faces 012 354 0341 1452 2530
  *
- * Nodes 0 1 2 of a wedge run counter-clockwise seen from below, from outside, unlike those of a
+ * Nodes 0 1 2 of a wedge run counterclockwise as seen from below (outside), unlike the base of a
  * pyramid or hexahedron: the Jacobian at corner 0 of a valid wedge takes the edges to 2, 1 and 3.
  */
 #ifndef tautline_CellTopology_h
@@ -79,9 +80,9 @@ constexpr int NumberOfCellTypes = 6;
  * @brief Constant facts of one cell type.
  *
  * A corner c spans the Jacobian A_c = [p(k1)-p(c), p(k2)-p(c), p(k3)-p(c)] with k1 k2 k3 its
- * neighbours in right-handed order (two in 2D); W_c is the same matrix of the ideal cell, whose
+ * neighbors in right-handed order (two in 2D); W_c is the same matrix of the ideal cell, whose
  * edges all have length 1 (equilateral triangle and faces, square, cube, right wedge, equilateral
- * pyramid). Metrics that do not depend on the corner chosen use the first `samples` corners.
+ * pyramid). Metrics that are independent of the corner use the first `samples` corners.
  */
 struct CellTopology
 {
@@ -92,16 +93,17 @@ struct CellTopology
   int nodes;
   int edges;
   int faces; ///< 0 in 2D
-  /// Corners with a Jacobian. A pyramid has 4: at its apex four edges meet and there is none.
+  /// Corners with a Jacobian. A pyramid has 4: at its apex, four edges meet, and there is none.
   int corners;
-  /// Corners a target metric is sampled at: 1 for simplices (A W^-1 is the same at each), else all.
+  /// Corners at which a target metric is sampled: 1 for simplices (A W^-1 is the same at each),
+  /// otherwise all.
   int samples;
   std::array<std::array<int, 2>, MaxEdges> edgeNodes;
   std::array<std::array<int, 2>, MaxEdges> edgeFaces; ///< the two faces at each edge, in 3D
   std::array<int, MaxFaces> faceSizes;
-  /// Nodes of each face, counter-clockwise seen from outside.
+  /// Nodes of each face, counterclockwise as seen from outside.
   std::array<std::array<int, MaxFaceNodes>, MaxFaces> faceNodes;
-  std::array<std::array<int, 4>, MaxNodes> cornerNodes; ///< corner, then its neighbours
+  std::array<std::array<int, 4>, MaxNodes> cornerNodes; ///< corner, then its neighbors
   /// W^-1 at each corner, row by row, 3 x 3 (2D uses the leading 2 x 2).
   std::array<std::array<double, 9>, MaxNodes> idealInverse;
   /// Area or volume of the ideal cell divided by det W: 1/2, 1, 1/6, 1, 1/2, 1/3.
@@ -122,7 +124,7 @@ TAUTLINE_KERNEL_EXPORT int topologyIndex(CellType type);
 /**
  * @brief The type whose corners a VTK cell has: itself for the six linear types; triangle for
  * quadratic and bi-quadratic triangles and so on (VTK lists corners first); Unsupported for
- * vertices, lines, strips, polygons, pixels, voxels, polyhedra and all else.
+ * vertices, lines, strips, polygons, pixels, voxels, polyhedra and all other types.
  */
 TAUTLINE_KERNEL_EXPORT CellType cornerType(int vtkCellType);
 

@@ -28,7 +28,7 @@ std::uint64_t hashOf(const std::array<std::uint64_t, 3>& key)
   return hash;
 }
 
-/// The bits of the coordinates; those of 0 for -0.
+/// The bits of the coordinates; -0 has the bits of 0.
 std::array<std::uint64_t, 3> placeOf(const MeshView& view, Index point)
 {
   std::array<std::uint64_t, 3> bits;
@@ -40,8 +40,8 @@ std::array<std::uint64_t, 3> placeOf(const MeshView& view, Index point)
   return bits;
 }
 
-/// Ids filed under keys that a function gives for an id: open addressing, linear probing. Keys are
-/// compared only where the leading bits of their hashes are equal.
+/// Ids stored by keys that a function computes from an id: open addressing, linear probing. Keys
+/// are compared only where the leading bits of their hashes are equal.
 class IdTable
 {
 public:
@@ -55,7 +55,7 @@ public:
     this->Slots.assign(size, empty);
   }
 
-  /// The id that was filed with an equal key, or this one, which is filed.
+  /// The stored id with an equal key, or this id, which is then stored.
   template <class Key, class KeyOf>
   Index insert(Index id, const Key& key, const KeyOf& keyOf)
   {
@@ -65,7 +65,7 @@ public:
     return idIn(slot);
   }
 
-  /// The id that was filed with an equal key, or -1.
+  /// The stored id with an equal key, or -1.
   template <class Key, class KeyOf>
   Index find(const Key& key, const KeyOf& keyOf) const
   {
@@ -80,7 +80,7 @@ private:
 
   static Index idIn(std::uint64_t slot) { return static_cast<Index>(slot & ~tag); }
 
-  /// The slot with an equal key, or else an empty one.
+  /// The slot with an equal key, otherwise an empty slot.
   template <class Key, class KeyOf>
   std::size_t slotOf(std::uint64_t hash, const Key& key, const KeyOf& keyOf) const
   {
@@ -103,7 +103,7 @@ bool isFinite(const MeshView& view, Index point)
   return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
 }
 
-/// One flag per point: a finite corner of a supported cell.
+/// One flag per point: nonzero for a finite corner of a supported cell.
 std::vector<char> usedPoints(const Mesh& mesh, int threads)
 {
   const MeshView& view = mesh.view();
@@ -115,19 +115,19 @@ std::vector<char> usedPoints(const Mesh& mesh, int threads)
   return used;
 }
 
-/// The places at which several points are.
+/// The locations of coincident points.
 struct Places
 {
-  std::vector<Index> of;     ///< per point: the smallest point at its place
-  std::vector<char> several; ///< per point: there are others at its place
+  std::vector<Index> of;     ///< per point: the smallest point at its location
+  std::vector<char> several; ///< per point: whether others coincide with it
   bool any = false;
 };
 
-/// Whether several of the used points are at one place. Each part takes the points whose hashes
-/// fall to it: points at one place fall to the same part.
+/// Whether any of the used points coincide. Each part processes the points whose hashes belong to
+/// it: coincident points belong to the same part.
 bool anyAtOnePlace(const MeshView& view, const std::vector<char>& used, Index count, int threads)
 {
-  constexpr int PartBit = 32; // of the hash: the table uses those below and above
+  constexpr int PartBit = 32; // of the hash: the table uses the bits below and above
   const Index parts = numberOfParts(count, threads);
   const auto keyOf = [&view](Index point) { return placeOf(view, point); };
   std::atomic<bool> found{ false };
@@ -187,17 +187,17 @@ Places findPlaces(const Mesh& mesh, int threads)
 
 using FacetNodes = std::array<Index, MaxFaceNodes>;
 
-/// A use of a facet with a point that has others at its place.
+/// A use of a facet with a point that coincides with others.
 struct SidedFacet
 {
   FacetNodes places; ///< in increasing order; a missing one is -1 and first
   FacetNodes nodes;  ///< in the order of their places
   Index cell;
-  bool forward;    ///< the sense in which the cell traverses it, by its places
-  bool collapsing; ///< it has a place where a cell has two points
+  bool forward;    ///< the direction in which the cell traverses it, by its locations
+  bool collapsing; ///< whether it has a location where a cell has two points
 };
 
-/// The facet of a cell, and the sense of walking, by places.
+/// The facet of a cell, and its orientation, by locations.
 SidedFacet seamFacet(const Index* nodes, int size, Index cell, const Places& places)
 {
   SidedFacet facet;
@@ -211,7 +211,7 @@ SidedFacet seamFacet(const Index* nodes, int size, Index cell, const Places& pla
     sorted[k] = { places.of[nodes[k]], nodes[k] };
     smallest = sorted[k].first < sorted[smallest].first ? k : smallest;
   }
-  // For an edge, whether its smallest node comes first; for a face, which neighbour of its smallest
+  // For an edge, whether its smallest node comes first; for a face, which neighbor of its smallest
   // node follows it.
   const Index next = sorted[(smallest + 1) % size].first;
   const Index previous = sorted[(smallest + size - 1) % size].first;
@@ -231,8 +231,8 @@ SidedFacet seamFacet(const Index* nodes, int size, Index cell, const Places& pla
   return facet;
 }
 
-/// The facets of cells of the mesh's dimension with a point that has others at its place, but for
-/// ghosts; marks the places where a cell has two points.
+/// The facets of cells of the mesh dimension, except ghosts, with a point that coincides with
+/// others; marks the locations where a cell has two points.
 std::vector<SidedFacet> seamFacets(
   const Mesh& mesh, const Places& places, const unsigned char* ghosts, std::vector<char>& collapses)
 {
@@ -278,7 +278,7 @@ std::vector<SidedFacet> seamFacets(
   return facets;
 }
 
-/// The corners of a cell by their places.
+/// The corners of a cell by their locations.
 struct CellAtPlace
 {
   std::array<std::pair<Index, Index>, MaxNodes> corners; ///< place and node, in increasing order
@@ -303,8 +303,8 @@ struct CellAtPlace
   }
 };
 
-/// The cells with a point that has others at its place, those at the same places together: first
-/// those that are no ghosts.
+/// The cells with a point that coincides with others, grouped by location; cells that are not
+/// ghosts come first.
 std::vector<CellAtPlace> cellsByPlace(
   const Mesh& mesh, const Places& places, const unsigned char* ghosts)
 {
@@ -334,7 +334,7 @@ std::vector<CellAtPlace> cellsByPlace(
   return cells;
 }
 
-/// What becomes of the uses of the facets at one place.
+/// Processes the uses of coincident facets.
 class SeamJoiner
 {
 public:
@@ -346,10 +346,11 @@ public:
   {
   }
 
-  /// Joins the points of two boundary facets at the same place, or counts why they stay apart.
+  /// Joins the points of two coincident boundary facets, or counts the reason why they stay
+  /// separate.
   void visit(const SidedFacet* uses, Index count)
   {
-    // Uses of the same nodes stand together: two are a facet inside of the mesh.
+    // Uses of the same nodes are adjacent: two uses form an interior facet.
     std::array<const SidedFacet*, 2> boundary = {};
     Index facets = 0;
     for (Index i = 0; i < count;)
@@ -389,7 +390,7 @@ public:
     }
   }
 
-  /// Joins the points of ghosts with those of the cells that they are copies of.
+  /// Joins the points of ghosts with the points of the cells of which they are copies.
   void joinGhosts(const Mesh& mesh, const Places& places, const unsigned char* ghosts)
   {
     const std::vector<CellAtPlace> cells = cellsByPlace(mesh, places, ghosts);
@@ -417,7 +418,8 @@ public:
       }
     }
     constexpr Index None = -1, Ambiguous = -2;
-    std::vector<Index> pointAt(this->OnSeam.size(), None); // that all ghosts at a place get
+    // the point that all ghosts at a location get
+    std::vector<Index> pointAt(this->OnSeam.size(), None);
     const auto count = static_cast<Index>(places.several.size());
     for (const char own : { 1, 0 })
     {
@@ -445,7 +447,7 @@ public:
     this->Ghosts = true;
   }
 
-  /// Joins the points of the 2D cells of a volume mesh with those of the 3D cells.
+  /// Joins the points of the 2D cells of a volume mesh with the points of the 3D cells.
   void joinSurface(const Mesh& mesh, const Places& places)
   {
     const std::vector<char> ofElement = cornerPoints(mesh, 3, 1);
@@ -513,7 +515,7 @@ private:
   bool Sided;
   UnionFind Points, Seams;
   std::vector<char> OnSeam;
-  bool Ghosts = false; ///< points were joined that are on no seam
+  bool Ghosts = false; ///< whether points off the seams were joined
   CoincidentPoints Found;
 };
 }
@@ -639,7 +641,7 @@ bool neighbors(const Mesh& mesh, VertexCells& around, Index a, Index b)
   const MeshView& view = mesh.view();
   if (around.offsets.empty())
   {
-    around = mesh.vertexCells(); // as a rule, no points are near
+    around = mesh.vertexCells(); // usually, no points are near
   }
   return std::any_of(around.cells.begin() + around.offsets[a],
     around.cells.begin() + around.offsets[a + 1],
@@ -668,7 +670,7 @@ Index countNearPoints(
   {
     return 0;
   }
-  // Boxes twice as wide as the distance: a point is near those of eight boxes only.
+  // Boxes twice as wide as the distance: only points in eight boxes can be near a point.
   const double width = 2 * distance;
   using Box = std::array<std::uint64_t, 3>;
   const auto boxOf = [&](const Vec3& p)
@@ -680,7 +682,7 @@ Index countNearPoints(
     return box;
   };
   const auto keyOf = [&](Index point) { return boxOf(pointOf(view, point)); };
-  // The points of a box are a list, which begins at the one that is filed.
+  // The points of a box form a list that begins at the stored one.
   std::vector<Index> next(view.numberOfPoints, -1);
   IdTable table(std::count(flags.begin(), flags.end(), 1));
   for (Index p = 0; p < view.numberOfPoints; ++p)

@@ -10,11 +10,11 @@ namespace tautline
 {
 namespace
 {
-/// The nodes of a face, counter-clockwise seen from outside.
+/// The nodes of a face, counterclockwise as seen from outside.
 using Face = std::vector<Index>;
 using Faces = std::vector<Face>;
 
-/// Nodes in a cycle without those that are equal to the one before.
+/// The nodes of a cycle without repetitions of the previous node.
 Face distinctCycle(const Face& cycle)
 {
   Face result;
@@ -40,7 +40,7 @@ bool listsTwice(const Index* nodes, int count)
   return false;
 }
 
-/// The cycle from its smallest node on, by which equal faces are equal.
+/// The cycle starting from its smallest node, so that equal faces compare equal.
 Face fromSmallest(Face face)
 {
   std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
@@ -68,7 +68,7 @@ Faces facesOf(CellType type, const Index* nodes)
   return faces;
 }
 
-/// What remains of the faces; empty if a face touches itself in a node.
+/// The remaining faces; empty if a face touches itself in a node.
 Faces remainingFaces(CellType type, const Index* nodes)
 {
   Faces remaining;
@@ -121,8 +121,8 @@ bool hasEdge(const Face& face, Index a, Index b)
   return false;
 }
 
-/// Cuts a quadrilateral over four nodes along the diagonal that is no edge of another face: two
-/// triangles on the other diagonal make it a tetrahedron.
+/// Cuts a quadrilateral over four nodes along the diagonal that is not an edge of another face: two
+/// triangles on the other diagonal complete it to a tetrahedron.
 Faces cutAcross(const Faces& faces)
 {
   Faces result;
@@ -145,7 +145,7 @@ Faces cutAcross(const Faces& faces)
   return result;
 }
 
-/// The node that is joined with a node of a triangle by an edge outside of it; -1 without one.
+/// The node connected to a node of a triangle by an edge outside the triangle; -1 if there is none.
 Index partnerOf(Index node, const Face& triangle, const Faces& faces)
 {
   for (const Face& face : faces)
@@ -167,15 +167,15 @@ Index partnerOf(Index node, const Face& triangle, const Faces& faces)
   return -1;
 }
 
-/// The node that a face does not have.
+/// The node that is not in a face.
 Index apexOver(const Face& face, const std::vector<Index>& nodes)
 {
   return *std::find_if(nodes.begin(), nodes.end(),
     [&](Index node) { return std::find(face.begin(), face.end(), node) == face.end(); });
 }
 
-/// The nodes of a cell in its own numbering by its first face; empty if the number of nodes and
-/// faces is that of no type.
+/// The nodes of a cell in its local numbering, starting from its first face; empty if no type has
+/// this number of nodes and faces.
 std::vector<Index> numbered(const Faces& faces, const std::vector<Index>& nodes, CellType& type)
 {
   const auto triangle =
@@ -252,7 +252,7 @@ CellType remainingShape(CellType type, Index* nodes)
   {
     return CellType::Unsupported;
   }
-  // The numbering came from one face: the others must fit.
+  // The numbering is based on one face: the others must match.
   Faces wanted = facesOf(shape, result.data());
   std::transform(wanted.begin(), wanted.end(), wanted.begin(), fromSmallest);
   std::sort(wanted.begin(), wanted.end());
@@ -267,7 +267,7 @@ CellType remainingShape(CellType type, Index* nodes)
 
 namespace
 {
-/// The cells of a block that list points twice, and what remains of them.
+/// The cells of a block that list points twice, and the remaining shapes.
 std::vector<CollapsedCell> collapsedOf(const MeshView& view, const CellBlock& block, int threads)
 {
   const int nodes = topology(block.type).nodes;
@@ -293,7 +293,7 @@ std::vector<CollapsedCell> collapsedOf(const MeshView& view, const CellBlock& bl
   return found;
 }
 
-/// Appends what remains of a cell to the arrays of the result.
+/// Appends the remaining shape of a cell to the arrays of the result.
 void appendRemaining(const MeshView& view, const CollapsedCell& collapsed, CollapsedCells& result)
 {
   const Index begin = view.offsets[collapsed.cell], end = view.offsets[collapsed.cell + 1];

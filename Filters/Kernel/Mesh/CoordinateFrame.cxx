@@ -12,7 +12,8 @@ namespace tautline
 namespace
 {
 constexpr Index SampledCells = 1000;
-/// An axis along which the mesh is farther than this many cells, and times its extent, is shifted.
+/// The mesh is shifted along an axis if it is farther away than this many cells and this many times
+/// its extent.
 constexpr double FarInCells = 0x1p20, FarInExtents = 0x1p10;
 }
 
@@ -127,7 +128,7 @@ void requireOrdinaryScale(const MeshView& view, const std::string& work)
     std::ostringstream text;
     text.precision(2);
     text << work << " needs cells between " << SmallestExtent << " and " << LargestExtent
-         << " long, the typical one is " << extent
+         << " long; the typical one is " << extent
          << " long: scale the mesh first (filter Transform).";
     throw Error(text.str());
   }

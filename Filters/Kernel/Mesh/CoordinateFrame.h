@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CoordinateFrame.h
- * @brief Coordinates of extreme size or far from the origin, and the frame that they are computed
- * in.
+ * @brief Coordinates of extreme size or far from the origin, and the frame used for computing with
+ * them.
  *
- * Double precision holds lengths from 1e-308 to 1e308, but the square of a volume only between
- * lengths of 1e-51 and 1e51. Measuring functions scale each cell for themselves (Metrics.h). What
- * moves points or assembles matrices takes cells of SmallestExtent to LargestExtent;
- * requireOrdinaryScale() refuses others. A CoordinateFrame brings a mesh there and back.
+ * Double precision holds lengths from 1e-308 to 1e308, but the square of a volume only for lengths
+ * from 1e-51 to 1e51. Measuring functions scale each cell individually (Metrics.h). Functions that
+ * move points or assemble matrices support cells of SmallestExtent to LargestExtent;
+ * requireOrdinaryScale() rejects others. A CoordinateFrame converts a mesh to this range and back.
  *
  *     const tautline::CoordinateFrame frame(tautline::coordinateRange(view));
  *     std::vector<double> points(view.points, view.points + 3 * view.numberOfPoints);
@@ -30,7 +30,8 @@ namespace tautline
 {
 struct MeshView;
 
-/// Where the cells of a mesh are and how large; of at most 1000 cells, evenly spread over the mesh.
+/// The location and size of the cells of a mesh, from at most 1000 cells evenly spread over the
+/// mesh.
 struct TAUTLINE_KERNEL_EXPORT CoordinateRange
 {
   double extent = 0; ///< median of the longest extents along an axis; 0: none
@@ -38,36 +39,36 @@ struct TAUTLINE_KERNEL_EXPORT CoordinateRange
   /// The largest absolute coordinate.
   double farthest() const;
   /**
-   * @brief The step between neighbouring numbers of this precision at the largest coordinate.
-   * @param singlePrecision 24 bits, as in float; else 53
+   * @brief The spacing of consecutive floating-point numbers at the largest coordinate.
+   * @param singlePrecision 24 bits, as in float; otherwise 53
    */
   double spacing(bool singlePrecision) const;
 };
 
-/// Cells with a coordinate that is not finite, and those without extent, do not count.
+/// Cells with a coordinate that is not finite and cells without extent are ignored.
 TAUTLINE_KERNEL_EXPORT CoordinateRange coordinateRange(const MeshView& view);
 
 /**
  * @class tautline::CoordinateFrame
- * @brief An origin and a unit of length, so that cells are of ordinary size and near the origin.
+ * @brief An origin and a unit of length such that cells have ordinary size and are near the origin.
  *
  * It is the identity unless needed. The unit is a power of two: 1 for cells of SmallestExtent to
  * LargestExtent. The origin is 0 along each axis along which the mesh is not far away: farther than
- * 2^20 cells and 2^10 times its own extent. Entering a frame is exact there; leaving rounds to the
- * digits that coordinates have so far from the origin.
+ * 2^20 cells and 2^10 times its own extent. Entering a frame is then exact; leaving it rounds to
+ * the precision of coordinates that far from the origin.
  */
 class TAUTLINE_KERNEL_EXPORT CoordinateFrame
 {
 public:
   CoordinateFrame() = default;
-  /// @param shifted off: the origin stays where it is
+  /// @param shifted off: the origin is not shifted
   explicit CoordinateFrame(const CoordinateRange& range, bool shifted = true);
 
   const Vec3& origin() const { return this->Origin; }
   double unit() const { return this->Unit; }
   bool isIdentity() const { return this->Unit == 1 && this->Origin == Vec3{ 0, 0, 0 }; }
 
-  /// Coordinates of a mesh in this frame, and back; in place, 3 per point.
+  /// Converts coordinates of a mesh to this frame, and back; in place, 3 per point.
   void enter(std::vector<double>& points) const;
   void leave(std::vector<double>& points) const;
 
@@ -78,7 +79,7 @@ private:
 
 /**
  * @brief Throws Error if the typical cell is not between SmallestExtent and LargestExtent long.
- * @param work what cannot be done, the subject of the message: "Untangling"
+ * @param work the operation, used as the subject of the message: "Untangling"
  */
 TAUTLINE_KERNEL_EXPORT void requireOrdinaryScale(const MeshView& view, const std::string& work);
 }

@@ -24,7 +24,7 @@ struct PlacedPoint
   }
 };
 
-/// @param x its coordinates, of which -0 becomes 0
+/// @param x its coordinates; -0 is converted to 0
 PlacedPoint placedAt(const double* x, Index number, Index local)
 {
   return { { x[0] + 0.0, x[1] + 0.0, x[2] + 0.0 }, number, local };
@@ -47,7 +47,8 @@ std::vector<Index> coordinateOrder(const DistributedMesh& mesh)
   const std::vector<std::vector<PlacedPoint>> sent = splitIntoRanges(group, own);
   const std::vector<std::vector<PlacedPoint>> received = group.exchangeItems(sent);
 
-  // The points of a range come from all ranks; their places go back in the order of arrival.
+  // The points of a range come from all ranks; their positions are sent back in the order of
+  // arrival.
   struct Arrival
   {
     PlacedPoint point;

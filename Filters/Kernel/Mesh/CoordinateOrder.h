@@ -13,7 +13,7 @@
 namespace tautline
 {
 /**
- * @brief The place of each local point among all points of the mesh, 0 to globalPoints() - 1, in
+ * @brief The position of each local point among all points of the mesh, 0 to globalPoints() - 1, in
  * the order of x, then y, then z, then its number. It depends on the coordinates alone. Collective.
  *
  * Ranks sort their points; samples of them divide the order into one range per rank.
@@ -21,11 +21,11 @@ namespace tautline
 TAUTLINE_KERNEL_EXPORT std::vector<Index> coordinateOrder(const DistributedMesh& mesh);
 
 /**
- * @brief The same of the points of the elements of a mesh on one process. Other points, and those
- * that are not finite, follow in the order of their numbers.
+ * @brief The same for the points of the elements of a mesh on one process. Other points and
+ * nonfinite points follow in the order of their numbers.
  * @param places of the points, three numbers each
- * @param representative of points that are one, the first of them, which they have the place of;
- * empty: all are themselves
+ * @param representative the first of the points merged with each point, whose position it shares;
+ * empty: no merged points
  */
 TAUTLINE_KERNEL_EXPORT std::vector<Index> coordinateOrder(
   const Mesh& mesh, const double* places, const std::vector<Index>& representative);

@@ -8,7 +8,7 @@ namespace tautline
 {
 namespace
 {
-/// Marks the corners of a part of each block's cells, the `part`-th of `parts`.
+/// Marks the corners of the `part`-th of `parts` parts of the cells of each block.
 void markPart(const Mesh& mesh, int dimension, Index part, Index parts, std::vector<char>& marks)
 {
   const MeshView& view = mesh.view();
@@ -24,7 +24,7 @@ void markPart(const Mesh& mesh, int dimension, Index part, Index parts, std::vec
       [&](auto nodesOfCell)
       {
         constexpr int Nodes = decltype(nodesOfCell)::value;
-        char* const mark = marks.data(); // local: stores through it cannot change it
+        char* const mark = marks.data(); // a local pointer, which stores through it cannot modify
         for (Index i = block.count * part / parts; i < end; ++i)
         {
           pollInterruption(i);
@@ -43,7 +43,7 @@ void markPart(const Mesh& mesh, int dimension, Index part, Index parts, std::vec
 std::vector<char> cornerPoints(const Mesh& mesh, int dimension, int threads)
 {
   const Index points = mesh.view().numberOfPoints;
-  // Each part has marks of its own: no thread writes what another one does.
+  // Each part has separate marks, so that no two threads write to the same memory.
   std::vector<std::vector<char>> marks(numberOfParts(mesh.view().numberOfCells, threads));
   const auto parts = static_cast<Index>(marks.size());
   parallelFor(parts, 1, threads,

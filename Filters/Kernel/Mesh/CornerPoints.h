@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CornerPoints.h
- * @brief The points that cells of a mesh have as corners.
- * Internal: not installed.
+ * @brief The points that are corners of cells of a mesh. Internal: not installed.
  */
 #ifndef tautline_CornerPoints_h
 #define tautline_CornerPoints_h
@@ -12,8 +11,8 @@
 namespace tautline
 {
 /**
- * @brief One flag per point: a corner of a supported cell.
- * @param dimension of the cells that count, 2 or 3; 0 for all
+ * @brief One flag per point: nonzero for a corner of a supported cell.
+ * @param dimension of the cells to use, 2 or 3; 0 for all
  * @param threads the most that are used; 0 means all
  */
 TAUTLINE_KERNEL_EXPORT std::vector<char> cornerPoints(

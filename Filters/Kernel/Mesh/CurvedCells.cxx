@@ -45,8 +45,8 @@ std::map<CellKey, std::vector<Index>> sortCells(
   return cells;
 }
 
-/// The type of some cells, or null where it is not supported. Orders that do not fit the number of
-/// nodes are ignored: special numbers of nodes have none.
+/// The type of some cells, or null if it is not supported. Orders that do not match the number of
+/// nodes are ignored: special node counts have none.
 const ElementType* typeOf(const CellKey& key)
 {
   const auto& [type, nodes, given] = key;
@@ -97,7 +97,7 @@ CurvedBlock blockOf(const Mesh& mesh, int vtkType, const ElementType& type,
       block.restored.insert(block.restored.end(), nodes, nodes + type.nodes());
     }
   }
-  // Reversed cells have the opposite sign in the order of the file.
+  // In file order, reversed cells have the opposite sign.
   Index* own = block.restored.data();
   for (std::size_t i = 0; i < cells.size(); ++i)
   {
@@ -159,7 +159,7 @@ static_assert(static_cast<int>(ElementValidity::Valid) == Valid &&
     static_cast<int>(ElementValidity::Degenerate) == Degenerate &&
     static_cast<int>(ElementValidity::Invalid) == Inverted &&
     static_cast<int>(ElementValidity::NonFinite) == NonFinite,
-  "both have the same codes");
+  "both use the same codes");
 }
 
 //------------------------------------------------------------------------------

@@ -2,7 +2,7 @@
 /**
  * @file CurvedCells.h
  * @brief The validity and the smallest Jacobian determinant of cells of quadratic and higher order,
- * certified for the whole cell and not for its corners only.
+ * certified for the whole cell and not only for its corners.
  */
 #ifndef tautline_CurvedCells_h
 #define tautline_CurvedCells_h
@@ -12,23 +12,23 @@
 
 namespace tautline
 {
-/// What a mesh does not have about its curved cells.
+/// Facts about curved cells that are not contained in a mesh.
 struct CurvedCellFacts
 {
   /// Null, or three numbers per cell: the orders of Lagrange and Bezier cells (VTK's cell array
   /// HigherOrderDegrees).
   const double* degrees = nullptr;
-  /// Null, or a flag per cell: its corners are listed in the opposite order, by reverseCell(), and
-  /// its other nodes are not.
+  /// Null, or a flag per cell: nonzero if its corners, but not its other nodes, were reversed by
+  /// reverseCell().
   const unsigned char* reversed = nullptr;
   /// Whether the corners 1 and 2, and 4 and 5, of Lagrange and Bezier wedges are exchanged in the
-  /// mesh, so that their orientation is that of linear wedges.
+  /// mesh, to match the orientation of linear wedges.
   bool wedgesTurned = false;
-  /// Whether Bezier cells have weights of their own: these are not certified.
+  /// Whether Bezier cells have individual weights: such cells are not certified.
   bool rational = false;
 };
 
-/// The curved cells of one type and order, as certifiers take them: in the order of the file.
+/// The curved cells of one type and order, in file order for the certifiers.
 struct CurvedBlock
 {
   const ElementType* type = nullptr;
@@ -36,42 +36,42 @@ struct CurvedBlock
   std::vector<const Index*> nodes; ///< by position in `cells`; of the view, or of `restored`
   std::vector<Index> restored;     ///< nodes of cells whose corners the mesh has in another order
   Vec3 normal = { 0, 0, 0 };       ///< of a planar mesh
-  /// By position, whether the cell is taken for its mirror image.
+  /// By position, whether the cell is treated as its mirror image.
   std::vector<unsigned char> mirrored;
-  /// Whether these are wedges in the less common order: quadratic ones usually list their triangles
-  /// as VTK's linear ones do, Lagrange and Bezier wedges in the opposite order.
+  /// Whether these are wedges in the less common order: quadratic wedges usually list their
+  /// triangles like VTK's linear wedges, Lagrange and Bezier wedges in the opposite order.
   bool turned = false;
 
   CurvedBlock() = default;
   CurvedBlock(CurvedBlock&&) = default;
-  CurvedBlock(const CurvedBlock&) = delete; // `nodes` has places of `restored`
+  CurvedBlock(const CurvedBlock&) = delete; // `nodes` points into `restored`
 
   Index count() const { return static_cast<Index>(this->cells.size()); }
-  /// The positions from `begin` to `end` of cells that are mirrored, or of the others.
+  /// The positions from `begin` to `end` of mirrored cells, or of the others.
   std::vector<Index> positions(Index begin, Index end, bool isMirrored) const;
 };
 
 /**
  * @brief The cells of quadratic and higher order that ElementType supports.
  *
- * Wedges of one type and order are taken for their mirror images where most of them are reversed:
- * files have them in two orders.
- * @param linear whether also linear cells, whose map has the same form
+ * Wedges of one type and order are treated as their mirror images if most of them are reversed:
+ * files use two orders.
+ * @param linear whether to include linear cells, whose map has the same form
  */
 TAUTLINE_KERNEL_EXPORT std::vector<CurvedBlock> curvedBlocks(
   const Mesh& mesh, const CurvedCellFacts& facts, bool linear = false);
 
-/// Where the determinant of a cell is smallest.
+/// The minimum of the determinant of a cell.
 struct CurvedMinimum
 {
-  double value = 0;      ///< 0 where a coordinate is not finite
-  double lower = 0;      ///< a certified lower bound; 0 where a coordinate is not finite
+  double value = 0;      ///< 0 if a coordinate is not finite
+  double lower = 0;      ///< a certified lower bound; 0 if a coordinate is not finite
   Vec3 at = { 0, 0, 0 }; ///< reference coordinates, see ElementType.h
 };
 
 /**
  * @brief The validity of the cells of some blocks, and their smallest determinants.
- * @param validity of each cell of the mesh; those of other cells are left as they are
+ * @param validity of each cell of the mesh; other cells are left unchanged
  * @param minima of each cell of the mesh, or null
  */
 TAUTLINE_KERNEL_EXPORT void certifyBlocks(const std::vector<CurvedBlock>& blocks,
@@ -81,12 +81,12 @@ TAUTLINE_KERNEL_EXPORT void certifyBlocks(const std::vector<CurvedBlock>& blocks
  * @brief Replaces the validity, and the smallest determinant, of the cells of quadratic and higher
  * order.
  *
- * The determinant refers to the same reference cells as the metric min_jacobian. In a plane its
- * sign is that of Mesh::normal(); a cell of a surface is valid if its normal vanishes nowhere.
- * Cells that ElementType does not support are left as they are.
+ * The determinant refers to the same reference cells as the metric min_jacobian. In a plane, its
+ * sign is relative to Mesh::normal(); a cell of a surface is valid if its normal vanishes nowhere.
+ * Cells that ElementType does not support are left unchanged.
  *
  * @param validity of each cell
- * @param minimum of each cell; may be null. 0 where a coordinate is not finite.
+ * @param minimum of each cell; may be null. 0 if a coordinate is not finite.
  * @return the number of cells that were certified
  */
 TAUTLINE_KERNEL_EXPORT Index certifyCurvedCells(const Mesh& mesh, const CurvedCellFacts& facts,
@@ -94,13 +94,13 @@ TAUTLINE_KERNEL_EXPORT Index certifyCurvedCells(const Mesh& mesh, const CurvedCe
 
 /**
  * @brief Certified lower bounds of the smallest determinant of all cells that ElementType supports,
- * linear ones too.
+ * including linear ones.
  *
- * The determinant is as in certifyCurvedCells(); of a cell of a surface in space, the bound is of
- * the component of its normal along the mean normal. A bound is below the minimum by 1e-8 of the
- * largest coefficient of the determinant at most, also where the minimum is not positive.
+ * The determinant is as in certifyCurvedCells(); for a cell of a surface in space, the component of
+ * its normal along the mean normal is bounded. A bound is at most 1e-8 times the largest
+ * coefficient of the determinant below the minimum, even if the minimum is not positive.
  *
- * @param lower of each cell; 0 of other cells, and where a coordinate is not finite
+ * @param lower of each cell; 0 for other cells, and where a coordinate is not finite
  */
 TAUTLINE_KERNEL_EXPORT void boundJacobians(
   const Mesh& mesh, const CurvedCellFacts& facts, double* lower, int threads = 0);

@@ -14,7 +14,7 @@ namespace tautline
 {
 namespace
 {
-/// A copy of a point that a rank has of another one.
+/// A copy of a point that a rank holds from another rank.
 struct PartCopy
 {
   int receiver;
@@ -44,11 +44,11 @@ void check(const MeshView& view, const std::vector<int>& partOfCell, int parts,
   if (wrong != partOfCell.end())
   {
     throw Error("Cell " + std::to_string(wrong - partOfCell.begin()) + " is in part " +
-      std::to_string(*wrong) + "; from 0 to " + std::to_string(parts - 1) + " is allowed.");
+      std::to_string(*wrong) + "; it must be from 0 to " + std::to_string(parts - 1) + ".");
   }
 }
 
-/// Per point, the rank that owns it, or -1 for one without a cell.
+/// Per point, the rank that owns it, or -1 if it has no cell.
 std::vector<int> findOwners(
   const MeshView& view, const std::vector<int>& partOfCell, const std::vector<Index>& numbers)
 {
@@ -72,7 +72,8 @@ std::vector<int> findOwners(
   return owners;
 }
 
-/// The copies that ranks need: of the points of their part and of the cells about their own points.
+/// The copies that ranks need: of the points of their part and of the cells around their owned
+/// points.
 std::vector<PartCopy> findCopies(
   const MeshView& view, const std::vector<int>& partOfCell, const std::vector<int>& owners)
 {
@@ -109,7 +110,7 @@ std::vector<PartCopy> findCopies(
   return copies;
 }
 
-/// Messages and neighbours from the copies.
+/// Derives messages and neighbors from the copies.
 void countMessages(const std::vector<PartCopy>& copies, const std::vector<int>& owners,
   const std::vector<int>& sets, std::vector<PartCounts>& parts)
 {
@@ -150,8 +151,8 @@ DecompositionCounts countDecomposition(const MeshView& view, const std::vector<i
   int parts, const std::vector<unsigned char>& free)
 {
   check(view, partOfCell, parts, free);
-  // Numbers and sets do not depend on the ranks: this process finds them alone. Global ids keep
-  // points apart that are at the same place.
+  // Numbers and sets do not depend on the ranks, so that this process computes them alone. Global
+  // ids keep coincident points separate.
   SingleRank alone;
   std::vector<Index> ids(view.numberOfPoints);
   std::iota(ids.begin(), ids.end(), Index(0));

@@ -36,6 +36,7 @@ void exchangeValues(RankGroup& group,
 {
   std::vector<RankMessage> sent, received;
   const auto size = static_cast<std::size_t>(components) * sizeof(Value);
+  // Toward the owners, the roles of the two lists are swapped.
   const auto listOf = [&](const DistributedMesh::Subset::Neighbour& n, bool sends) -> const auto&
   {
     return sends != toOwners ? n.sent : n.received;
@@ -70,6 +71,7 @@ void exchangeValues(RankGroup& group,
       std::memcpy(got.data(), message->bytes.data() + i * size, size);
       for (int c = 0; c < components; ++c)
       {
+        // Toward the owners, only nonzero values are taken.
         to[c] = toOwners && !(got[c] != Value()) ? to[c] : got[c];
       }
     }
@@ -96,6 +98,7 @@ void DistributedMesh::exchange(const Subset& subset, double* values, int compone
 
 void DistributedMesh::either(unsigned char* flags) const
 {
+  // First combine the flags at the owners, then return them to all copies.
   exchangeValues(*this->Group, this->Halo, flags, 1, true);
   this->exchange(flags);
 }
@@ -128,7 +131,7 @@ std::vector<int> DistributedMesh::independentSets(const std::vector<unsigned cha
   std::vector<unsigned char> agreed = wanted;
   this->exchange(agreed.data());
   const Index n = this->localPoints();
-  // Neighbours of the own points, with a hash above theirs: they choose first.
+  // Neighbors of the owned points with a larger hash: they choose first.
   const auto hashOf = [&](Index p)
   { return SplitMix::mixed(static_cast<std::uint64_t>(this->Numbers[p])); };
   std::vector<std::vector<std::int32_t>> before(n);
@@ -158,6 +161,8 @@ std::vector<int> DistributedMesh::independentSets(const std::vector<unsigned cha
     }
   }
   std::sort(left.begin(), left.end(), [&](Index a, Index b) { return hashOf(a) > hashOf(b); });
+  // Greedy coloring (Jones-Plassmann): each round, a point whose neighbors with larger hashes all
+  // have a set takes the smallest set free among them.
   constexpr double none = -1;
   std::vector<double> set(n, none);
   std::vector<char> taken;

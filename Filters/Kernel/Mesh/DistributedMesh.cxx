@@ -35,8 +35,8 @@ std::uint64_t spreadBits(std::uint64_t x)
 /// Flags of the points of a piece.
 enum Use : char
 {
-  OfCell = 1,    ///< a cell has it, which may be a ghost
-  OfElement = 2, ///< a cell that is no ghost has it
+  OfCell = 1,    ///< used by a cell, which may be a ghost
+  OfElement = 2, ///< used by a cell that is not a ghost
   Follows = 4    ///< MeshPiece::followers
 };
 
@@ -46,7 +46,7 @@ struct IdAndPlace
   double x[3];
 };
 
-/// Throws Error, on all ranks, where an id is at two places.
+/// Throws Error on all ranks if an id is at two locations.
 void checkIds(RankGroup& group, const std::vector<IdAndPlace>& own)
 {
   std::vector<std::vector<IdAndPlace>> sent;
@@ -68,13 +68,13 @@ void checkIds(RankGroup& group, const std::vector<IdAndPlace>& own)
     if (all[i].id == all[i - 1].id && !std::equal(all[i].x, all[i].x + 3, all[i - 1].x))
     {
       throw Error("The global point id " + std::to_string(all[i].id) +
-        " is at two places: run Generate Global Ids again.");
+        " is at two locations: run Generate Global Ids again.");
     }
   }
 }
 }
 
-/// What points are sorted by, and where they are from.
+/// The sort key of a point, and its source.
 struct DistributedMesh::PointKey
 {
   std::uint64_t curve;
@@ -82,12 +82,12 @@ struct DistributedMesh::PointKey
   Index id;
   Index source;   ///< the point of the piece
   Index rank;     ///< of the piece
-  Index withCell; ///< whether a cell that is no ghost has it there
-  Index owner;    ///< that is wanted, or -1
-  Index counts;   ///< whether a cell has it there, and not only a follower
+  Index withCell; ///< whether a cell there that is not a ghost has it
+  Index owner;    ///< the requested owner, or -1
+  Index counts;   ///< whether a cell there has it, not only a follower
 
   auto place() const { return std::tie(this->curve, this->x[0], this->x[1], this->x[2], this->id); }
-  /// By the place alone: keys of one point are equal.
+  /// Compares only the position: keys of one point are equal.
   bool operator<(const PointKey& other) const { return this->place() < other.place(); }
 };
 
@@ -120,7 +120,7 @@ void DistributedMesh::build(const MeshPiece& piece)
          takesPart(piece.view, cell) && n < piece.view.offsets[cell + 1]; ++n)
     {
       const Index point = piece.view.connectivity[n];
-      if (point < 0 || point >= piece.view.numberOfPoints) // beyond what the cell's type has
+      if (point < 0 || point >= piece.view.numberOfPoints) // beyond the nodes of the cell type
       {
         throw Error("Cell " + std::to_string(cell) + " lists point " + std::to_string(point) +
           ", but the mesh has " + std::to_string(piece.view.numberOfPoints) + " points.");
@@ -152,7 +152,7 @@ void DistributedMesh::build(const MeshPiece& piece)
   this->numberPoints(piece, used);
   for (Index p = 0; p < piece.view.numberOfPoints; ++p)
   {
-    used[p] = this->PieceNumbers[p] < 0 ? 0 : used[p]; // no element is at a follower
+    used[p] = this->PieceNumbers[p] < 0 ? 0 : used[p]; // followers have no element
   }
   this->takeCells(piece, used);
   this->connect();
@@ -205,7 +205,7 @@ void DistributedMesh::findBounds(const MeshPiece& piece, const std::vector<char>
 }
 
 //------------------------------------------------------------------------------
-/// The keys of the points that cells have, sorted.
+/// The sorted keys of the points of cells.
 std::vector<DistributedMesh::PointKey> DistributedMesh::makeKeys(
   const MeshPiece& piece, const std::vector<char>& used)
 {
@@ -216,7 +216,7 @@ std::vector<DistributedMesh::PointKey> DistributedMesh::makeKeys(
              without = group.any(here && !piece.globalIds);
   if (withIds && without)
   {
-    throw Error("Some processes have global point ids and others have none: run Generate Global "
+    throw Error("Some processes have global point ids and others do not: run Generate Global "
                 "Ids.");
   }
   this->findBounds(piece, used);
@@ -265,7 +265,7 @@ std::vector<DistributedMesh::PointKey> DistributedMesh::makeKeys(
 }
 
 //------------------------------------------------------------------------------
-/// Sends keys to ranks so that each gets a range of them, and returns this rank's, sorted.
+/// Sends keys to ranks so that each gets a range of them, and returns the sorted keys of this rank.
 std::vector<DistributedMesh::PointKey> DistributedMesh::distribute(
   const std::vector<PointKey>& keys) const
 {
@@ -281,7 +281,8 @@ std::vector<DistributedMesh::PointKey> DistributedMesh::distribute(
 }
 
 //------------------------------------------------------------------------------
-/// The numbers of the points, and the owners: of the ranks with a cell there one by a hash.
+/// Determines the numbers of the points and the owners: of the ranks with a cell there, one is
+/// chosen by a hash.
 void DistributedMesh::numberPoints(const MeshPiece& piece, const std::vector<char>& used)
 {
   RankGroup& group = *this->Group;
@@ -310,7 +311,7 @@ void DistributedMesh::numberPoints(const MeshPiece& piece, const std::vector<cha
     }
     return end;
   };
-  // The first key of a cell; the end if followers alone are there.
+  // The first key of a cell; the end if there are only followers.
   const auto firstThatCounts = [&range](std::size_t begin, std::size_t end)
   {
     while (begin < end && !range[begin].counts)
@@ -361,7 +362,7 @@ void DistributedMesh::numberPoints(const MeshPiece& piece, const std::vector<cha
         owner = range[i].rank;
       }
     }
-    if (least < std::numeric_limits<std::uint64_t>::max()) // an element has it
+    if (least < std::numeric_limits<std::uint64_t>::max()) // an element uses it
     {
       const PointKey& key = range[counted];
       owner = key.owner >= 0 ? key.owner
@@ -387,7 +388,7 @@ void DistributedMesh::numberPoints(const MeshPiece& piece, const std::vector<cha
 }
 
 //------------------------------------------------------------------------------
-/// The local points, and where each number is among them.
+/// Sets the local points and the position of each number among them.
 void DistributedMesh::takePoints(
   const MeshPiece& piece, const std::vector<char>& used, std::vector<SentPoint>& points)
 {
@@ -419,7 +420,7 @@ Index DistributedMesh::local(Index number) const
 }
 
 //------------------------------------------------------------------------------
-/// The points that cells have on this rank, and those of the cells that others send.
+/// Exchanges the points of cells on this rank and of the cells that others send.
 /// @param needed per other rank, points of the piece that it needs, with repetitions
 void DistributedMesh::exchangePoints(
   const MeshPiece& piece, const std::vector<char>& used, std::vector<std::vector<Index>> needed)
@@ -470,7 +471,7 @@ std::vector<std::vector<std::int32_t>> DistributedMesh::exchangeCells(
   { return !(piece.ghosts && piece.ghosts[cell]) && takesPart(view, cell); };
   const auto isOwn = [&](Index point) { return this->PieceOwners[point] == self; };
   std::vector<std::vector<Index>> sent, needed;
-  std::size_t staying = 0; // length of the list of those of this rank
+  std::size_t staying = 0; // length of the list for this rank
   sent.resize(group.size());
   needed.resize(group.size());
   std::vector<int> ranks;
@@ -545,7 +546,7 @@ std::vector<std::vector<std::int32_t>> DistributedMesh::exchangeCells(
 }
 
 //------------------------------------------------------------------------------
-/// Keeps the first of cells that are copies of each other: which one depends on their points only.
+/// Keeps the first of cells that are copies of each other; the choice depends only on their points.
 void DistributedMesh::dropCopies(TakenCells& taken)
 {
   const std::vector<TakenCells::Cell>& cells = taken.cells();
@@ -618,7 +619,7 @@ void DistributedMesh::takeCells(const MeshPiece& piece, const std::vector<char>&
     {
       throw Error("Processes " + std::to_string(std::min(cells[i].rank, cells[i - 1].rank)) +
         " and " + std::to_string(std::max(cells[i].rank, cells[i - 1].rank)) +
-        " have the same cell, and neither marks it as a ghost: give each cell to one process, "
+        " have the same cell, and neither marks it as a ghost: assign each cell to one process, "
         "or mark copies in the array vtkGhostType.");
     }
   }

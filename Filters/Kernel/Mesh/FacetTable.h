@@ -16,14 +16,15 @@
 
 namespace tautline
 {
-/// One use of an edge or face by a cell, filed under its smallest node.
+/// One use of an edge or face by a cell, stored by its smallest node.
 struct FacetUse
 {
   std::array<Index, MaxFaceNodes - 1> others; ///< the other nodes in increasing order, then -1
   Index cell;
-  /// The sense in which the cell traverses the facet; two cells agree when theirs differ.
+  /// The direction in which the cell traverses the facet; the orders of two cells agree if their
+  /// directions differ.
   bool forward;
-  Index sum; ///< of the cell's nodes; that of a duplicate is equal
+  Index sum; ///< of the nodes of the cell; duplicates have equal sums
 };
 
 /// Whether two cells have the same nodes, in any order.
@@ -36,15 +37,15 @@ inline bool sameNodes(const MeshView& view, Index a, Index b)
 }
 
 /**
- * @brief The facets (edges or faces) of a mesh's cells of highest dimension, filed by smallest
- * node. Of cells with the same nodes the first one counts: the facets of a duplicate on the
- * boundary are used once. Those of large meshes are filed in parts, one after the other, which take
- * a quarter of the memory.
+ * @brief The facets (edges or faces) of the cells of highest dimension of a mesh, stored by
+ * smallest node. Only the first of several cells with the same nodes is used: the boundary facets
+ * of a duplicate are used once. For large meshes, the facets are processed in parts, one after the
+ * other, which need a quarter of the memory.
  */
 class FacetTable
 {
 public:
-  /// @param skip one flag per cell: it does not count; may be null. Both must outlive the table.
+  /// @param skip one flag per cell: nonzero to ignore it; may be null. Both must outlive the table.
   explicit FacetTable(const Mesh& mesh, const unsigned char* skip = nullptr)
     : TheMesh(mesh)
     , View(mesh.view())
@@ -59,7 +60,7 @@ public:
   template <class Visit>
   void forEachFacet(const Visit& visit)
   {
-    constexpr Index small = Index(1) << 20; // uses that are filed at once in any case
+    constexpr Index small = Index(1) << 20; // number of uses that are always stored at once
     constexpr Index parts = 4;
     const Index nodes = static_cast<Index>(this->Starts.size()) - 1;
     const Index most = std::max(small, this->Starts.back() / parts);
@@ -76,7 +77,7 @@ public:
   }
 
 private:
-  /// Files the uses of facets whose smallest node is one from `first` to `last` - 1.
+  /// Stores the uses of facets with a smallest node from `first` to `last` - 1.
   void fileUses(Index first, Index last)
   {
     const Index begin = this->Starts[first];
@@ -137,7 +138,7 @@ private:
   /// Moves the uses of a facet by distinct cells to the front. @return the end of these
   Index dropDuplicates(Index begin, Index end)
   {
-    constexpr Index many = 64; // cells at a facet: it is not manifold in any case
+    constexpr Index many = 64; // number of cells at a facet that is certainly not manifold
     if (end - begin > many)
     {
       return end;
@@ -191,7 +192,7 @@ private:
             nodes[k] = node[dimension == 3 ? t.faceNodes[f][k] : t.edgeNodes[f][k]];
             smallest = nodes[k] < nodes[smallest] ? k : smallest;
           }
-          // The sense of walking follows from the neighbours of the smallest node; for an edge, by
+          // The direction follows from the neighbors of the smallest node or, for an edge, from
           // whether the smallest node comes first.
           const Index next = nodes[(smallest + 1) % size];
           const Index previous = nodes[(smallest + size - 1) % size];

@@ -18,7 +18,8 @@ constexpr double flattest = 1e-4;
 /// Rounding of the cosine of an angle that is exactly the limit.
 constexpr double roundingOfCosine = 1e-9;
 
-/// Facets of the same class can be one patch: a boundary of a region, or an interface of two.
+/// Facets of the same class can form one patch: the boundary of a region, or the interface between
+/// two.
 struct FacetClass
 {
   double first, second;
@@ -41,19 +42,19 @@ struct Side
 struct Candidate
 {
   Index a, b;
-  double cosine; ///< between the two facets; -2 on a border or junction
+  double cosine; ///< cosine between the two facets; -2 on a border or junction
   bool sharp;
   FacetClass of;
-  std::array<Index, 2> facets = { -1, -1 }; ///< where there are two of one class
+  std::array<Index, 2> facets = { -1, -1 }; ///< set if there are two facets of one class
 };
 
 constexpr double borderCosine = -2;
 
-/// FeatureOptions::coarse: the largest bend that may be smooth, as a multiple of the angle, and how
-/// far the surface has to bend on, as a fraction of the bend.
+/// FeatureOptions::coarse: the largest bend that may be smooth, as a multiple of the angle, and the
+/// minimum bend of the adjacent surface, as a fraction of the bend.
 constexpr double coarsest = 1.5, alike = 1.0 / 3;
 
-/// An edge at a free end of a curve is clearly sharp from this multiple of the angle on.
+/// An edge at a free end of a curve is clearly sharp above this multiple of the angle.
 constexpr double clearlySharp = 1.25;
 
 /// The angle from one vector to another.
@@ -184,7 +185,8 @@ void FeatureFinder::takeFaces()
         this->Candidates.push_back({ smallest, uses->others[0], borderCosine, true, facetClass });
         return;
       }
-      // Out of the cell of the smallest region: the facets of an interface face the same way then.
+      // Outward from the cell of the smallest region, so that all facets of an interface face the
+      // same way.
       const FacetUse& use = *std::min_element(uses, uses + count,
         [this](const FacetUse& a, const FacetUse& b)
         { return this->regionOf(a.cell) < this->regionOf(b.cell); });
@@ -203,7 +205,7 @@ void FeatureFinder::takeFaces()
 }
 
 //------------------------------------------------------------------------------
-/// Unit, or zero if the facet is too flat to have one.
+/// The unit normal, or zero if the facet is too thin.
 Vec3 FeatureFinder::normalOf(const Features::Facet& facet) const
 {
   Vec3 p[MaxFaceNodes];
@@ -224,7 +226,7 @@ Vec3 FeatureFinder::normalOf(const Features::Facet& facet) const
 }
 
 //------------------------------------------------------------------------------
-/// The edges of all facets, those of the same points one after the other.
+/// The edges of all facets, grouped by their points.
 std::vector<Side> FeatureFinder::sortedSides() const
 {
   std::vector<Index> starts(this->View.numberOfPoints + 1, 0);
@@ -267,8 +269,8 @@ double FeatureFinder::longestEdge(const Features::Facet& facet) const
 }
 
 //------------------------------------------------------------------------------
-/// Gives facets without a normal those of neighbors; whether there were any.
-/// @param overLongest only of neighbors at their longest edge
+/// Assigns the normals of neighbors to facets without one; returns whether there were any.
+/// @param overLongest only from neighbors at their longest edge
 bool FeatureFinder::adopt(const std::vector<Side>& sides, bool overLongest)
 {
   constexpr double rounding = 1e-9;
@@ -312,8 +314,8 @@ bool FeatureFinder::adopt(const std::vector<Side>& sides, bool overLongest)
   return !choices.empty();
 }
 
-/// A facet without area is a part of the side that its longest edge has: where that is sharp, its
-/// other edges are.
+/// A facet without area belongs to the neighbor at its longest edge: if that edge is sharp, so are
+/// its other edges.
 void FeatureFinder::adoptNormals(const std::vector<Side>& sides)
 {
   const auto hasNone = [](const Vec3& normal) { return !(dot(normal, normal) > 0); };
@@ -348,11 +350,11 @@ void FeatureFinder::judgeSides()
 }
 
 //------------------------------------------------------------------------------
-/// Decides whether the edge that these facets share is a feature.
+/// Decides whether the common edge of these facets is a feature.
 void FeatureFinder::judge(const Side* sides, Index count)
 {
   const FacetClass& first = this->Classes[sides[0].facet];
-  // The regions on both sides, whatever the order of the facets.
+  // The regions on both sides, for any order of the facets.
   double low = first.first, high = first.first;
   for (Index k = 1; k < count; ++k)
   {
@@ -364,7 +366,7 @@ void FeatureFinder::judge(const Side* sides, Index count)
   if (count == 2 && !(first != this->Classes[sides[1].facet]))
   {
     const Index other = sides[1].facet;
-    // Facets that go the same way along the edge are listed in opposite senses.
+    // Facets that traverse the edge in the same direction have opposite orientations.
     const double sign = sides[0].forward == sides[1].forward ? -1 : 1;
     const Vec3 &m = this->Normals[sides[0].facet], &n = this->Normals[other];
     const bool known = dot(m, m) > 0 && dot(n, n) > 0;
@@ -403,8 +405,8 @@ void FeatureFinder::findFacetsOfPoints()
 }
 
 //------------------------------------------------------------------------------
-/// Whether the surface behind one of the two facets of an edge bends on about the edge, by a
-/// similar angle.
+/// Whether the surface beyond one of the two facets of an edge continues to bend about the edge, by
+/// a similar angle.
 bool FeatureFinder::bendsOn(const Candidate& edge, int side) const
 {
   const Vec3 &own = this->Normals[edge.facets[side]], &other = this->Normals[edge.facets[1 - side]];
@@ -418,7 +420,7 @@ bool FeatureFinder::bendsOn(const Candidate& edge, int side) const
     for (Index i = this->Starts[p]; p != edge.a && p != edge.b && i < this->Starts[p + 1]; ++i)
     {
       const Vec3& next = this->Normals[this->FacetsAt[i]];
-      // Of facets that face along the edge, as the end of a cylinder, there is no telling.
+      // Facets whose normal is along the edge, such as the end of a cylinder, are inconclusive.
       constexpr double least = 0.5;
       const Vec3 across = next - dot(next, axis) * axis;
       const double turn = std::atan2(dot(cross(own, across), axis), dot(own, across));
@@ -433,7 +435,8 @@ bool FeatureFinder::bendsOn(const Candidate& edge, int side) const
 }
 
 //------------------------------------------------------------------------------
-/// Makes edges smooth that are sharp only because the mesh is coarse, see FeatureOptions::coarse.
+/// Marks edges as smooth that are sharp only because the mesh is coarse, see
+/// FeatureOptions::coarse.
 void FeatureFinder::relaxEdges()
 {
   const double limit =
@@ -455,7 +458,7 @@ void FeatureFinder::relaxEdges()
 }
 
 //------------------------------------------------------------------------------
-/// Makes edges sharp or smooth by the given kinds of their points.
+/// Marks edges as sharp or smooth according to the given kinds of their points.
 void FeatureFinder::obeyKinds()
 {
   const signed char* kinds = this->Options.kinds;
@@ -493,8 +496,8 @@ void FeatureFinder::obeyKinds()
 }
 
 //------------------------------------------------------------------------------
-/// Makes curves smooth as far as they fade at a free end, and those with a free end that are short,
-/// see FeatureOptions::shortestCurve.
+/// Removes the ends of curves that fade out and short curves with a free end, see
+/// FeatureOptions::shortestCurve.
 void FeatureFinder::dropNoise()
 {
   const auto isGiven = [this](Index p)
@@ -528,7 +531,7 @@ void FeatureFinder::dropNoise()
   }
   for (Index p = 0; p < this->View.numberOfPoints; ++p)
   {
-    // From a free end to where the curve ends, too, or meets others.
+    // From a free end to the other end of the curve or to a junction.
     std::vector<Candidate*> curve;
     bool given = isGiven(p);
     Index end = p;
@@ -551,7 +554,8 @@ void FeatureFinder::dropNoise()
 }
 
 //------------------------------------------------------------------------------
-/// Whether two edges at a point differ by more than the angle, or belong to different curves.
+/// Whether the directions of two edges at a point differ by more than the angle, or the edges
+/// belong to different curves.
 bool FeatureFinder::bends(Index point, const Candidate& e, const Candidate& f) const
 {
   if (this->Options.edges)
@@ -604,8 +608,8 @@ void FeatureFinder::classifyPoints()
 }
 
 //------------------------------------------------------------------------------
-/// Makes points of curves smooth that bend only because the mesh is coarse.
-/// @param edges of each point the first two features, of `count`
+/// Marks curve points as smooth that bend only because the mesh is coarse.
+/// @param edges the first two of the `count` features at each point
 void FeatureFinder::relaxPoints(
   const std::vector<std::array<Index, 2>>& edges, const std::vector<Index>& count)
 {
@@ -690,7 +694,7 @@ void FeatureFinder::findCurves()
 void FeatureFinder::findPatches()
 {
   Features& result = this->Result;
-  // Candidates that are no features were dropped: what is left is found by its points.
+  // Candidates that are not features were removed: the remaining ones are found by their points.
   std::vector<std::array<Index, 2>> sharp;
   for (const Features::Edge& e : result.edges)
   {
@@ -736,7 +740,7 @@ void FeatureFinder::findPatches()
     for (int k = 0; k < facet.size; ++k)
     {
       const Index p = facet.nodes[k];
-      // Two patches that touch in a point hold it.
+      // A point where two patches touch is a corner.
       if (result.kind[p] == PatchPoint && result.patchOf[p] >= 0 &&
         result.patchOf[p] != facet.patch)
       {
@@ -759,7 +763,7 @@ Features findFeatures(const Mesh& mesh, const FeatureOptions& options)
 {
   if (!(options.angle >= 0 && options.angle <= 180))
   {
-    throw Error("The angle from which on an edge is sharp is " + std::to_string(options.angle) +
+    throw Error("The angle above which an edge is sharp is " + std::to_string(options.angle) +
       " degrees; it must be between 0 and 180.");
   }
   for (Index i = 0; options.kinds && i < mesh.view().numberOfPoints; ++i)
@@ -776,7 +780,7 @@ Features findFeatures(const Mesh& mesh, const FeatureOptions& options)
     if (std::isnan(options.regions[i]))
     {
       throw Error("The region of cell " + std::to_string(i) +
-        " is NaN: give every cell the number of its region.");
+        " is NaN: assign a region number to every cell.");
     }
   }
   return FeatureFinder(mesh, options).find();

@@ -13,7 +13,7 @@ namespace
 {
 constexpr double FoldCosine = -0.866; // of normals 150 degrees apart
 constexpr Index FewCells = 10;        // a group of more is not folded
-constexpr Index ManyTimes = 4;        // the elements that groups around have, at least
+constexpr Index ManyTimes = 4;        // minimum size ratio of the surrounding groups
 
 /// Two elements at an edge.
 struct Neighbors
@@ -24,8 +24,8 @@ struct Neighbors
 struct Group
 {
   Index cells = 0;
-  bool open = false;         ///< has a border, or an edge of more than two elements
-  Index smallestAround = -1; ///< elements of the smallest group beyond a fold
+  bool open = false;         ///< whether it has a border, or an edge of more than two elements
+  Index smallestAround = -1; ///< number of elements of the smallest group beyond a fold
 };
 }
 

@@ -12,10 +12,10 @@
 namespace tautline
 {
 /**
- * @brief Marks the folded elements of a surface in space as Inverted. Elements that are joined by
- * edges without a fold, of more than 150 degrees, are one group. A group of few elements is folded
- * if all its other edges are folds, and the groups beyond them have many more elements. So both
- * sides of a thin plate, and sharp ridges, are not.
+ * @brief Marks the folded elements of a surface in space as Inverted. Elements connected across
+ * edges that are not folds (of more than 150 degrees) form one group. A group of few elements is
+ * folded if all its other edges are folds, and the groups beyond them have many more elements.
+ * Thus, neither the sides of a thin plate nor sharp ridges are folded.
  * @param validity of the cells as Mesh::classifyCells() gives it; only Valid changes
  * @return the number of elements marked; 0 for other meshes
  */

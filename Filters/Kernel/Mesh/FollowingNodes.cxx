@@ -16,7 +16,7 @@ namespace
 {
 using Columns = std::array<Vec3, 3>;
 
-/// Shape functions below this are 0 but for rounding.
+/// Shape functions below this are 0 up to rounding.
 constexpr double Nothing = 1e-9;
 
 /// An element with the corners of another one.
@@ -27,7 +27,8 @@ ElementType straightElement(const ElementType& curved, int corners)
     curved.shape(), { 1, 1, 1 }, std::vector<Vec3>(all.begin(), all.begin() + corners));
 }
 
-/// Derivatives by the reference coordinates; of a surface the third is the unit normal.
+/// Derivatives with respect to the reference coordinates; for a surface, the third is the unit
+/// normal.
 double complete(Columns& columns, int dimension)
 {
   if (dimension == 2)
@@ -43,6 +44,7 @@ double complete(Columns& columns, int dimension)
 /// B A^-1 v
 Vec3 mapped(const Columns& a, const Columns& b, const Vec3& v)
 {
+  // Cramer's rule.
   const double det = dot(a[0], cross(a[1], a[2]));
   return (dot(cross(a[1], a[2]), v) / det) * b[0] + (dot(cross(a[2], a[0]), v) / det) * b[1] +
     (dot(cross(a[0], a[1]), v) / det) * b[2];
@@ -102,7 +104,7 @@ void FollowingNodes::findKinds(const Mesh& mesh, const double* degrees)
     {
       continue;
     }
-    // Orders that do not fit the number of nodes are ignored, as of special numbers of nodes.
+    // Orders that do not match the number of nodes are ignored, as for special node counts.
     const ElementType* type = nullptr;
     try
     {
@@ -123,7 +125,7 @@ void FollowingNodes::findKinds(const Mesh& mesh, const double* degrees)
       place.value = straight.shapeFunctions(where);
       for (int d = 0; d < t.dimension; ++d)
       {
-        // The functions are linear along each coordinate: differences are exact.
+        // The functions are linear in each coordinate, so differences are exact.
         Vec3 low = where, high = where;
         low[d] -= 0.5;
         high[d] += 0.5;
@@ -139,7 +141,8 @@ void FollowingNodes::findKinds(const Mesh& mesh, const double* degrees)
 }
 
 //------------------------------------------------------------------------------
-/// Calls visit(corner, value of its function) for the corners that determine the place of a node.
+/// Calls visit(corner, value of its function) for the corners that determine the position of a
+/// node.
 template <class Visit>
 void FollowingNodes::forEachCorner(const Use& use, const Visit& visit) const
 {
@@ -161,7 +164,7 @@ void FollowingNodes::mergeNodes(const Mesh& mesh, const std::vector<Index>& repr
     return;
   }
   const MeshView& view = mesh.view();
-  // Corners first: nodes are one if those between which they are are one.
+  // Corners first: nodes are merged if the corners between which they lie are merged.
   for (Index cell = 0; cell < view.numberOfCells; ++cell)
   {
     const int kind = this->KindOfCell[cell];
@@ -203,8 +206,8 @@ void FollowingNodes::mergeNodes(const Mesh& mesh, const std::vector<Index>& repr
 void FollowingNodes::findUses(const Mesh& mesh)
 {
   const MeshView& view = mesh.view();
-  // 0: no cell; -1: a corner of one, also where other cells have it in the middle of an edge; else
-  // the highest dimension of its cells.
+  // 0: no cell; -1: a corner of a cell, even if it is the middle of an edge in other cells;
+  // otherwise the highest dimension of its cells.
   std::vector<signed char> dimension(static_cast<std::size_t>(view.numberOfPoints), 0);
   const auto forEachNode = [&](const auto& visit)
   {

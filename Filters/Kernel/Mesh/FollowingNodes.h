@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file FollowingNodes.h
- * @brief The nodes of curved cells that are no corners: where they go when the corners move.
- * Internal: not installed.
+ * @brief The nodes of curved cells other than corners, and how they follow the motion of the
+ * corners. Internal: not installed.
  *
- * A node is where the straight cell has its reference coordinates, plus an offset: so much the cell
- * is curved there. When corners move, the node goes to that place of the new straight cell, plus
- * the offset as the affine map of the cell at the node takes it. An affine motion is exact, and a
- * curved cell that turns keeps its shape. Of a node of several cells the place in the straight cell
- * is the same in all of them, as it is on an edge or face that they share; their affine maps are
- * averaged with the sizes of the cells.
+ * The position of a node is its position in the straight cell plus an offset, which describes the
+ * curvature of the cell. When the corners move, the node moves to its position in the new straight
+ * cell plus the offset mapped by the affine map of the cell at the node. Affine motions are exact,
+ * and a rotating curved cell keeps its shape. If a node belongs to several cells, its position in
+ * the straight cell is the same in all of them, because it lies on a shared edge or face; their
+ * affine maps are averaged with the cell sizes as weights.
  */
 #ifndef tautline_FollowingNodes_h
 #define tautline_FollowingNodes_h
@@ -22,60 +22,61 @@ namespace tautline
 {
 /**
  * @class tautline::FollowingNodes
- * @brief Finds these nodes once, and places them for any positions of the corners.
+ * @brief Finds these nodes once and computes their positions for any positions of the corners.
  */
 class TAUTLINE_KERNEL_EXPORT FollowingNodes
 {
 public:
   /**
-   * @param mesh at rest, cells in VTK's order of nodes; only read here
+   * @param mesh at rest, cells in VTK's node order; only read here
    * @param degrees null, or the orders of Lagrange and Bezier cells, three numbers per cell
-   * @param representative of each point: points with the same one are one, see CoincidentPoints;
-   * nodes at one place between corners that are one are then one, too. Empty: none are.
-   * Throws Error for curved cells that ElementType does not support.
+   * @param representative of each point: points with the same representative are merged, see
+   * CoincidentPoints; coincident nodes between merged corners are then also merged. Empty: no
+   * merged points. Throws Error for curved cells that ElementType does not support.
    */
   explicit FollowingNodes(const Mesh& mesh, const double* degrees = nullptr,
     const std::vector<Index>& representative = {});
 
-  /// The points that follow; of several that are one the first.
+  /// The following points; the first of merged points.
   const std::vector<Index>& points() const { return this->Points; }
-  /// One flag per point: it follows, and lies on an edge (2D) or face (3D) that not exactly two
-  /// cells share.
+  /// One flag per point: nonzero if it follows and lies on an edge (2D) or face (3D) that is not
+  /// shared by exactly two cells.
   const std::vector<unsigned char>& boundary() const { return this->Boundary; }
-  /// Whether all, or any, of the corners that determine where the i-th of points() is in the
-  /// straight cell have a flag that is not 0.
+  /// Whether all, or any, of the corners that determine the position of the i-th of points() in the
+  /// straight cell have a nonzero flag.
   bool allCorners(std::size_t i, const std::vector<unsigned char>& flags) const;
   bool anyCorner(std::size_t i, const std::vector<unsigned char>& flags) const;
 
   /**
-   * @brief Writes the places of these nodes. A node that no corner of its cells moves stays where
-   * it is, bitwise. The result does not depend on the number of threads.
+   * @brief Writes the positions of these nodes. A node does not change, bitwise, if no corner of
+   * its cells moves. The result does not depend on the number of threads.
    * @param before 3 coordinates per point of the mesh
-   * @param points the same with moved corners; of points that are one that of the representative
-   * counts
+   * @param points the same with moved corners; of merged points, the position of the representative
+   * is used
    */
   void place(const double* before, std::vector<double>& points, int threads = 0) const;
 
-  /// Gives nodes that are one the place of the first of them.
+  /// Moves merged nodes to the position of the first one.
   void unite(std::vector<double>& points) const;
 
 private:
   /// The straight cell at a node of a curved one.
   struct Place
   {
-    std::vector<double> value;                     ///< of the linear shape functions, per corner
-    std::array<std::vector<double>, 3> derivative; ///< by the reference coordinates
+    /// values of the linear shape functions, per corner
+    std::vector<double> value;
+    std::array<std::vector<double>, 3> derivative; ///< with respect to the reference coordinates
   };
-  /// Of cells of one type, number of nodes and orders.
+  /// Data for cells of one type, number of nodes and orders.
   struct Kind
   {
     int dimension = 0, corners = 0;
-    std::vector<Place> places; ///< per node behind the corners
+    std::vector<Place> places; ///< per node after the corners
   };
   struct Use
   {
     Index cell;
-    int node; ///< behind the corners
+    int node; ///< after the corners
   };
 
   void findKinds(const Mesh& mesh, const double* degrees);
@@ -96,7 +97,7 @@ private:
   std::vector<Index> UseOffsets; ///< of Points
   std::vector<Use> Uses;         ///< of cells of the highest dimension at the point
   std::vector<unsigned char> Boundary;
-  std::vector<std::array<Index, 2>> Copies; ///< a point, and the first that is one with it
+  std::vector<std::array<Index, 2>> Copies; ///< a point, and the first point merged with it
 };
 }
 #endif

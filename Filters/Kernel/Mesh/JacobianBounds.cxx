@@ -10,10 +10,10 @@ namespace tautline
 {
 namespace
 {
-/// Of a box, before its cell counts as undecided.
+/// The number of subdivisions before a cell is treated as undecided.
 constexpr int maxSplits = 2000;
 
-/// Of determinants, relative to the longest edges in each direction.
+/// The rounding error of determinants, relative to the longest edges in each direction.
 constexpr double rounding = 1e-15;
 
 constexpr int Axes = 3;
@@ -43,8 +43,8 @@ struct Cell
   }
 };
 
-/// The derivatives of the shape functions by u, v, w; of a pyramid those of B(u, v) and of apex -
-/// B.
+/// The derivatives of the shape functions with respect to u, v, w; for a pyramid, of B(u, v) and of
+/// apex - B.
 void shapeDerivatives(const CellTopology& t, const Vec3& at, double (*d)[3])
 {
   const double u[2] = { 1 - at[0], at[0] }, v[2] = { 1 - at[1], at[1] };
@@ -79,7 +79,7 @@ void shapeDerivatives(const CellTopology& t, const Vec3& at, double (*d)[3])
   }
 }
 
-/// The derivatives of the map by u, v, w.
+/// The derivatives of the map with respect to u, v, w.
 std::array<Vec3, 3> mapDerivatives(const Cell& cell, const Vec3& at)
 {
   double d[MaxNodes][3];
@@ -139,7 +139,7 @@ struct Box
     }
   }
 
-  /// The axis along which the polynomial is bent most: only bends keep it from the smallest
+  /// The axis along which the polynomial bends most: only bending separates it from the smallest
   /// coefficient.
   int bentAxis() const
   {
@@ -180,7 +180,7 @@ struct Box
   }
 };
 
-/// Boxes still to be looked at, the one with the smallest coefficient first.
+/// The remaining boxes, the one with the smallest coefficient first.
 class BoxQueue
 {
 public:
@@ -267,8 +267,8 @@ public:
 private:
   static constexpr double tolerance = Mesh::degenerateTolerance();
 
-  /// Whether the polynomial is negative at a corner of a box; where it vanishes, the verdict
-  /// changes.
+  /// Whether the polynomial is negative at a corner of a box; if it vanishes there, the verdict is
+  /// updated.
   bool negativeAtCorner(const Box& box)
   {
     for (int k = 0; k < Box::Corners; ++k)
@@ -289,7 +289,7 @@ private:
     return false;
   }
 
-  /// Whether the coefficients leave open if the verdict becomes worse in this box.
+  /// Whether the coefficients do not exclude a worse verdict in this box.
   bool undecided(const Box& box) const
   {
     if (box.least > this->Clear)
@@ -312,12 +312,12 @@ private:
 
   const Cell& TheCell;
   Validity Verdict;
-  double Clear = 0; ///< values above this are positive beyond doubt
-  double Noise = 0; ///< values below this are rounding
+  double Clear = 0; ///< values above this are certainly positive
+  double Noise = 0; ///< values below this are rounding errors
 };
 
 //------------------------------------------------------------------------------
-/// Where a quadratic polynomial with Bernstein coefficients c has its minimum in [0, 1].
+/// The position in [0, 1] of the minimum of a quadratic polynomial with Bernstein coefficients c.
 double minimumPoint(const double* c)
 {
   const double bend = c[0] - 2 * c[1] + c[2];
@@ -348,7 +348,7 @@ std::array<JacobianMinimum, 3> wedgeMinima(const Cell& cell, double* noise = nul
     const double* q = c + 3 * k;
     const double w = minimumPoint(q);
     minima[k].at = { k == 2 ? 1.0 : 0.0, k == 1 ? 1.0 : 0.0, w };
-    // Exact where c0 c2 = c1^2, as the sum of the three terms would not be.
+    // Exact if c0 c2 = c1^2, unlike the sum of the three terms.
     const bool inside = w > 0 && w < 1;
     minima[k].value = inside ? (q[0] * q[2] - q[1] * q[1]) / (q[0] - 2 * q[1] + q[2])
       : w > 0                ? q[2]
@@ -423,7 +423,7 @@ void polish(const double* c, JacobianMinimum& minimum)
     double x[Axes];
     for (int a = 0; a < Axes; ++a)
     {
-      // Coordinates held by a side take no part.
+      // Coordinates at an active bound are excluded.
       const bool held = gradient[a] >= 0 ? minimum.at[a] <= 0 : minimum.at[a] >= 1;
       for (int b = 0; b < Axes && held; ++b)
       {

@@ -6,17 +6,17 @@
  * Internal: not installed.
  *
  * The reference elements are the unit cube, the prism over a triangle with two legs of length 1,
- * and the pyramid over the unit square. With x_u, x_v, x_w the derivatives of the linear map of the
+ * and the pyramid over the unit square. With the derivatives x_u, x_v, x_w of the map of the
  * element, det = x_u . (x_v x x_w) is
- * - of a hexahedron quadratic in each of u, v, w: 27 Bernstein coefficients;
- * - of a wedge linear over the triangle and quadratic along w: 3 x 3 coefficients;
- * - of a pyramid, with x = (1 - w) B(u, v) + w apex, the factor (1 - w)^2 times (B_u x B_v) .
- *   (apex - B), of which all but the bilinear terms vanish: its minimum is at a corner of the base
- *   (P. Knabner, G. Summ, "The invertibility of the isoparametric mapping for pyramidal and
- *   prismatic finite elements", Numer. Math. 88 (2001)).
+ * - for a hexahedron, quadratic in each of u, v, w: 27 Bernstein coefficients;
+ * - for a wedge, linear over the triangle and quadratic along w: 3 x 3 coefficients;
+ * - for a pyramid, with x = (1 - w) B(u, v) + w apex, the factor (1 - w)^2 times (B_u x B_v) .
+ *   (apex - B), of which all terms except the bilinear ones vanish: its minimum is at a corner of
+ *   the base (P. Knabner, G. Summ, "The invertibility of the isoparametric mapping for pyramidal
+ *   and prismatic finite elements", Numer. Math. 88 (2001)).
  *
  * A coefficient at a corner is the determinant there, and the smallest of all is a lower bound of
- * the determinant, which subdivision (de Casteljau) brings as near as wanted. Coefficients are
+ * the determinant, which subdivision (de Casteljau) tightens as much as needed. Coefficients are
  * means of the triple products of three edges in the directions u, v and w.
  *
  * A. Johnen, J.-C. Weill, J.-F. Remacle, "Robust and efficient validation of the linear hexahedral
@@ -29,7 +29,7 @@
 
 namespace tautline
 {
-/// Whether the determinant can be smaller inside a cell of a type than at its corners.
+/// Whether the determinant inside a cell of a type can be smaller than at its corners.
 inline bool hasInside(CellType type)
 {
   return type == CellType::Hexahedron || type == CellType::Wedge;
@@ -37,20 +37,20 @@ inline bool hasInside(CellType type)
 
 constexpr int MaxCoefficients = 27;
 
-/// The smallest determinant of a cell, and where in the reference element it is.
+/// The smallest determinant of a cell and its position in the reference element.
 struct JacobianMinimum
 {
   double value = 0;
-  Vec3 at = { 0, 0, 0 }; ///< u, v, w; of a wedge on one of its three edges along w
+  Vec3 at = { 0, 0, 0 }; ///< u, v, w; for a wedge, on one of its three edges along w
 };
 
 /**
  * @brief Whether the determinant is positive inside a cell that hasInside().
- * @param corners the verdict on the corners, which are not looked at again; not Inverted
+ * @param corners the verdict on the corners, which are not checked again; not Inverted
  * @return Valid if det > Mesh::degenerateTolerance() |x_u| |x_v| |x_w| everywhere, Inverted if det
- * is below the negative of that somewhere, else Degenerate; less than rounding, 1e-15 times the
- * product of the longest edges in each direction, counts as 0. Where the smallest value is so near
- * to the tolerance that 2000 subdivisions do not decide, Degenerate.
+ * is below the negative of that somewhere, otherwise Degenerate. Values below the rounding error,
+ * 1e-15 times the product of the longest edges in each direction, are treated as 0. Also Degenerate
+ * if the smallest value is so close to the tolerance that 2000 subdivisions are not conclusive.
  */
 Validity classifyInside(const CellTopology& t, const Vec3* vertices, Validity corners);
 
@@ -60,12 +60,13 @@ Validity classifyInside(const CellTopology& t, const Vec3* vertices, Validity co
  */
 TAUTLINE_KERNEL_EXPORT JacobianMinimum minimumJacobian(const CellTopology& t, const Vec3* vertices);
 
-/// The cells of a batch, all of a type that hasInside(), that are valid beyond doubt, inside and at
-/// the corners; their points are mirrored where the mesh is, as loadNodes() does.
+/// The cells of a batch, all of a type that hasInside(), that are certainly valid, inside and at
+/// the corners; their points are mirrored if the mesh is, as by loadNodes().
 TAUTLINE_KERNEL_EXPORT Mask clearlyValidCells(
   const Mesh& mesh, const CellTopology& t, const CellVertices& batch);
 
-/// The derivative of the determinant at a point of the reference element by each vertex.
+/// Adds the derivative of the determinant at a point of the reference element with respect to each
+/// vertex.
 TAUTLINE_KERNEL_EXPORT void addJacobianGradient(
   const CellTopology& t, const Vec3* vertices, const Vec3& at, double factor, Vec3* gradient);
 
@@ -112,7 +113,7 @@ void meanCrossProduct(const T* a, const T* b, const T* c, const T* d, T* result)
 /// The nodes of a hexahedron by their coordinates u, v, w in the unit cube.
 constexpr int cubeNode[2][2][2] = { { { 0, 4 }, { 3, 7 } }, { { 1, 5 }, { 2, 6 } } };
 
-/// The edges of a cell in the directions u, v, w, by the other two coordinates; of a wedge
+/// The edges of a cell in the directions u, v, w, by the other two coordinates; for a wedge,
 /// [corner of the triangle][0] along w, and [0][end] along u and v.
 template <class T>
 struct Edges
@@ -178,7 +179,8 @@ void hexahedronCoefficients(const Edges<T>& e, T* c)
   }
 }
 
-/// VTK's wedge has its triangle 0 1 2 clockwise seen from the other one: u goes to node 2, v to 1.
+/// In VTK's wedge, the triangle 0 1 2 is clockwise as seen from the other one: u goes to node 2, v
+/// to 1.
 template <class T>
 void wedgeEdges(const T (*p)[3], Edges<T>& e)
 {
@@ -206,7 +208,7 @@ void wedgeCoefficients(const Edges<T>& e, T* c)
   }
 }
 
-/// The coefficients of a cell with so many nodes, and their number.
+/// The coefficients of a cell with this many nodes, and their number.
 template <int Nodes, class T>
 int coefficients(const T (*p)[3], Edges<T>& e, T* c)
 {

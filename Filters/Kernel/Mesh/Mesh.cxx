@@ -19,12 +19,12 @@ std::string cellMessage(Index cell, const std::string& what)
   return "Cell " + std::to_string(cell) + " " + what;
 }
 
-/// The cells sorted by type; adds to the numbers of those of higher order, of unsupported ones and,
-/// among these, of polyhedra.
+/// The cells sorted by type; counts the cells of higher order, the unsupported ones and, among
+/// these, the polyhedra.
 std::vector<CellBlock> sortByType(
   const MeshView& view, Index& higherOrder, Index& unsupported, Index& polyhedra)
 {
-  // One pass finds which of the 256 types occur, so that a mesh of one type needs no id lists.
+  // One pass determines which of the 256 types occur, so that a mesh of one type needs no id lists.
   std::array<Index, 256> histogram{};
   for (Index i = 0; i < view.numberOfCells; ++i)
   {
@@ -96,7 +96,7 @@ void checkConnectivity(const MeshView& view, const std::vector<CellBlock>& block
             const Index node = view.connectivity[first + k];
             good = node >= 0 && node < view.numberOfPoints;
           }
-          Index smallest = wrong; // of several the one with the smallest id is reported
+          Index smallest = wrong; // the one with the smallest id is reported
           while (!good && (smallest < 0 || cell < smallest))
           {
             good = wrong.compare_exchange_weak(smallest, cell);
@@ -141,7 +141,7 @@ Mesh Mesh::at(const double* points) const
 }
 
 //------------------------------------------------------------------------------
-/// What depends on the points: which are not finite, and the plane.
+/// Determines the properties that depend on the points: nonfinite points and the plane.
 void Mesh::findDimension()
 {
   const MeshView& view = this->View;

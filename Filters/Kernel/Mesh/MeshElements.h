@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MeshElements.h
- * @brief Which cells of a mesh are its elements.
- * Internal: not installed.
+ * @brief Determines which cells of a mesh are elements. Internal: not installed.
  */
 #ifndef tautline_MeshElements_h
 #define tautline_MeshElements_h
@@ -11,7 +10,7 @@
 
 namespace tautline
 {
-/// Cells of the mesh's own dimension: those that are measured and optimized.
+/// Cells of the mesh dimension, which are measured and optimized.
 inline bool isElement(const Mesh& mesh, CellType type)
 {
   return topology(type).dimension == (mesh.dimension() == Dimension::Volume ? 3 : 2);

@@ -14,26 +14,26 @@ namespace
 {
 /**
  * @class PlaneSearch
- * @brief Finds out whether the corners of cells lie in a plane. Points that are no corner, and
- * those that are not finite, do not count.
- * @tparam Corners calls visitor(p) for every corner of every cell that counts, see run()
+ * @brief Determines whether the corners of cells lie in a plane. Other points and nonfinite points
+ * are ignored.
+ * @tparam Corners calls visitor(p) for every corner of every relevant cell, see run()
  */
 template <class Corners>
 class PlaneSearch
 {
 public:
-  /// @param group of ranks that each have a part of the corners; null: this process alone
+  /// @param group ranks that each have a part of the corners; null: this process alone
   PlaneSearch(const Corners& corners, RankGroup* group)
     : ForEachCorner(corners)
     , Group(group)
   {
   }
 
-  /// @param space of 2D cells; becomes Planar, with normal and frame, if there is a plane
+  /// @param space the space of 2D cells; becomes Planar, with normal and frame, if there is a plane
   void run(MeshSpace& space);
 
 private:
-  /// A mesh is planar when no vertex leaves its plane by more than this fraction of the diagonal.
+  /// A mesh is planar if no vertex is farther from its plane than this fraction of the diagonal.
   static constexpr double tolerance = 1e-6;
 
   Vec3 leastExtent(const Vec3& middle, double diagonal, Vec3& center);
@@ -107,7 +107,7 @@ void PlaneSearch<Corners>::run(MeshSpace& space)
     return;
   }
   const Vec3 extent = high - low;
-  // Scaled by a power of two, so that squares neither overflow nor vanish.
+  // Scaled by a power of two, so that squares neither overflow nor underflow.
   const double unit = unitOfExtent(std::max({ extent[0], extent[1], extent[2] }));
   const double diagonal = unit * norm((1 / unit) * extent);
   if (!(diagonal > 0) || !std::isfinite(diagonal))
@@ -118,7 +118,7 @@ void PlaneSearch<Corners>::run(MeshSpace& space)
   int axis = -1;
   for (int c = 0; c < 3; ++c)
   {
-    // A plane at right angles to an axis is taken exactly, without rounding in the frame.
+    // A plane perpendicular to an axis is represented exactly, without rounding in the frame.
     if (extent[c] <= tolerance * diagonal)
     {
       axis = c;
@@ -162,7 +162,7 @@ void PlaneSearch<Corners>::run(MeshSpace& space)
 }
 
 /// Calls visit(p) for the finite nodes of the cells, once per cell.
-/// @param skip one flag per cell: it does not count; may be null
+/// @param skip one flag per cell: nonzero to ignore it; may be null
 template <class Visit>
 void forEachFiniteCorner(const MeshView& view, const std::vector<CellBlock>& blocks,
   const unsigned char* skip, const Visit& visit)
@@ -191,7 +191,7 @@ bool areLevel(const MeshView& view)
 {
   const double level = view.numberOfPoints > 0 ? view.points[2] : 0.0;
   bool same = true;
-  double sum = 0; // finite if all coordinates are, or too large to be sure
+  double sum = 0; // finite if all coordinates are; may also overflow for large coordinates
   for (Index p = 0; p < view.numberOfPoints && same; ++p)
   {
     const double* x = view.points + 3 * p;
@@ -201,7 +201,7 @@ bool areLevel(const MeshView& view)
   return same && std::isfinite(sum) && std::isfinite(level);
 }
 
-/// Two corners of cells at different places; none if there are none.
+/// Two corners of cells at different positions; empty if there are none.
 std::vector<Vec3> differentCorners(const MeshView& view, const std::vector<CellBlock>& blocks)
 {
   std::vector<Vec3> found;
@@ -233,7 +233,7 @@ std::vector<Vec3> differentCorners(const MeshView& view, const std::vector<CellB
 void Mesh::findPlane()
 {
   MeshSpace space = this->space();
-  // Of level points, two corners have the plane that all have.
+  // For points at the same height, two corners determine the plane.
   const std::vector<Vec3> two =
     areLevel(this->View) ? differentCorners(this->View, this->Blocks) : std::vector<Vec3>();
   const auto corners = [&](const auto& visit)

@@ -14,9 +14,10 @@
 namespace tautline
 {
 /**
- * Signed area or volume of a cell with its faces cut into triangles about their centres, so that
- * the sum over a mesh whose cells agree depends on its boundary only, however tangled its inside.
- * With one origin for all cells, the contributions of an inner edge or face cancel exactly.
+ * The signed area or volume of a cell with its faces divided into triangles around their centers,
+ * so that the sum over a mesh with consistent cells only depends on its boundary, even if its
+ * interior is tangled. With one origin for all cells, the contributions of an inner edge or face
+ * cancel exactly.
  */
 inline double signedSize(
   const Mesh& mesh, const CellTopology& t, const Index* node, const Vec3& origin)
@@ -53,7 +54,7 @@ inline double signedSize(
   return sum;
 }
 
-/// A finite point that sizes are measured from, so that they do not suffer from a distant origin.
+/// A finite point used as the origin for sizes, to avoid rounding errors from a distant origin.
 inline Vec3 finitePoint(const MeshView& view)
 {
   Vec3 point = { 0, 0, 0 };
@@ -68,11 +69,11 @@ inline Vec3 finitePoint(const MeshView& view)
   return point;
 }
 
-/// What decides which way round a connected part is.
+/// The data that decide the orientation of a connected part.
 struct PartSign
 {
   double sum = 0, magnitude = 0;
-  Index majority = 0; // positive less inverted cells
+  Index majority = 0; // number of positive minus inverted cells
 
   void add(double size, int validity)
   {

@@ -14,7 +14,7 @@ namespace tautline
 namespace
 {
 constexpr double nearFraction = 1e-5; ///< of the shortest edge
-/// Places of an id that are compared: more are not copies, but ids that mean nothing.
+/// The maximum number of positions of an id that are compared: with more, the ids are meaningless.
 constexpr std::size_t mostPlaces = 64;
 
 struct Copy
@@ -27,7 +27,7 @@ struct Copy
   auto key() const { return std::tie(this->id, this->x[0], this->x[1], this->x[2]); }
 };
 
-/// The new place of a copy.
+/// The new position of a copy.
 struct Moved
 {
   Index source;
@@ -59,14 +59,14 @@ struct RankBox
   }
 };
 
-/// One flag per point: another one of the piece has its id.
+/// One flag per point: nonzero if another point of the piece has its id.
 std::vector<unsigned char> repeatedIds(const MeshView& view, const Index* ids)
 {
   std::vector<unsigned char> repeated(view.numberOfPoints, 0);
   const Index* end = ids + view.numberOfPoints;
   if (std::adjacent_find(ids, end, [](Index a, Index b) { return a >= b; }) == end)
   {
-    return repeated; // they increase
+    return repeated; // ids increase, so there are no repetitions
   }
   std::vector<Index> order(view.numberOfPoints);
   for (Index p = 0; p < view.numberOfPoints; ++p)
@@ -84,7 +84,7 @@ std::vector<unsigned char> repeatedIds(const MeshView& view, const Index* ids)
   return repeated;
 }
 
-/// The points that may have copies, by the rank that compares those with their id.
+/// The points that may have copies, by the rank that compares the points with their id.
 std::vector<std::vector<Copy>> candidates(RankGroup& group, const MeshView& view, const Index* ids,
   const std::vector<double>& shortest, const std::vector<RankBox>& boxes)
 {
@@ -97,7 +97,7 @@ std::vector<std::vector<Copy>> candidates(RankGroup& group, const MeshView& view
   for (Index p = 0; p < view.numberOfPoints; ++p)
   {
     const double* x = view.points + 3 * p;
-    const double distance = shortest[p]; // copies that are farther apart are counted, too
+    const double distance = shortest[p]; // copies that are farther apart are also counted
     if (!std::isfinite(x[0] + x[1] + x[2] + distance))
     {
       continue;
@@ -116,8 +116,8 @@ std::vector<std::vector<Copy>> candidates(RankGroup& group, const MeshView& view
   return sent;
 }
 
-/// The copies that move, by their ranks; adds what is found to `result`.
-/// @param together gets the number of ids of several points that are at one place then
+/// The copies that move, by rank; adds the counts to `result`.
+/// @param together receives the number of ids of several points that coincide afterwards
 std::vector<std::vector<Moved>> findMoved(
   std::vector<Copy>& copies, std::size_t ranks, JoinedCopies& result, Index& together)
 {
@@ -195,7 +195,7 @@ std::vector<double> shortestEdges(const MeshView& view)
     {
       const Index a = nodes[t.edgeNodes[e][0]], b = nodes[t.edgeNodes[e][1]];
       const double length = norm(pointOf(view, a) - pointOf(view, b));
-      if (length > 0) // and a number
+      if (length > 0) // and not NaN
       {
         shortest[a] = std::min(shortest[a], length);
         shortest[b] = std::min(shortest[b], length);
@@ -236,7 +236,7 @@ JoinedCopies joinCopies(RankGroup& group, const MeshView& view, const Index* ids
   sent = candidates(group, view, ids, shortest, group.gatherJoined(boxes));
   std::vector<Copy> copies = group.exchangeJoined(sent);
   moved = findMoved(copies, sent.size(), result, together);
-  // Ids of which most are at several places are not those of one mesh.
+  // If most ids are at several positions, they do not belong to one mesh.
   result.apart = group.sum(result.apart);
   if (group.sum(together) <= result.apart)
   {

@@ -11,7 +11,7 @@ namespace tautline
 {
 namespace
 {
-/// So many points for each rank decide where the planes are, and so many in all.
+/// The number of sample points per rank and in total that determine the planes.
 constexpr Index SamplesOfRank = 10000, MostSamples = 1000000;
 
 std::uint64_t hashOf(const Vec3& x)
@@ -26,7 +26,7 @@ std::uint64_t hashOf(const Vec3& x)
   return hash;
 }
 
-/// Of the points of all ranks some, in order: the same whichever ranks have them, as they are
+/// A sorted sample of the points of all ranks: independent of the distribution, because points are
 /// chosen by their coordinates.
 std::vector<Vec3> sampleOf(RankGroup& group, const std::vector<Vec3>& points)
 {

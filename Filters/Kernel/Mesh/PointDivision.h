@@ -12,7 +12,7 @@
 
 namespace tautline
 {
-/// The axes. Places with the same coordinate along one are told apart by their others.
+/// The axes. Points with the same coordinate along one axis are ordered by their other coordinates.
 struct TAUTLINE_KERNEL_EXPORT AxisFrame
 {
   bool before(int direction, const Vec3& a, const Vec3& b) const;
@@ -22,19 +22,19 @@ struct TAUTLINE_KERNEL_EXPORT AxisFrame
 
 /**
  * @class tautline::PointDivision
- * @brief A tree of planes such that all ranks get about as many of the points: within a few
- * percent, as a sample decides.
+ * @brief A tree of planes such that all ranks get about the same number of points: within a few
+ * percent, because a sample is used.
  *
- * All ranks have the same tree, and a place is in one part, whichever ranks have points there.
- * Regular grids are divided as evenly.
+ * All ranks have the same tree, and a position belongs to one part, regardless of which ranks have
+ * points there. Regular grids are divided equally well.
  */
 class TAUTLINE_KERNEL_EXPORT PointDivision
 {
 public:
-  /// Collective. @param points of this rank; those that several ranks have count once
+  /// Collective. @param points of this rank; points on several ranks are counted once
   PointDivision(RankGroup& group, const std::vector<Vec3>& points);
 
-  /// The rank of a place.
+  /// The rank of a position.
   int find(const Vec3& x) const { return this->Tree.find(x); }
 
 private:

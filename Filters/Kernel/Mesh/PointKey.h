@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PointKey.h
- * @brief What identifies a point in the pieces of a mesh on several ranks.
- * Internal: not installed.
+ * @brief The key that identifies a point in the pieces of a mesh on several ranks. Internal: not
+ * installed.
  */
 #ifndef tautline_PointKey_h
 #define tautline_PointKey_h
@@ -31,7 +31,7 @@ inline PointKey keyOfPoint(const RankPiece& piece, Index point)
   return key;
 }
 
-/// A hash to go on with.
+/// Combines a hash with another value.
 inline std::uint64_t addToHash(std::uint64_t hash, std::uint64_t value)
 {
   constexpr std::uint64_t odd = 0x9E3779B97F4A7C15u; // 2^64 over the golden ratio
@@ -39,7 +39,7 @@ inline std::uint64_t addToHash(std::uint64_t hash, std::uint64_t value)
   return hash ^ (hash >> 32);
 }
 
-/// The rank that gets what all have of a hash.
+/// The rank that collects all items with a hash.
 inline int homeOf(std::uint64_t hash, const RankGroup& group)
 {
   return static_cast<int>(hash % static_cast<std::uint64_t>(group.size()));

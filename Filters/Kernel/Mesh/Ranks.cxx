@@ -20,6 +20,7 @@ void Ranks::sum(double* values, Index count) const
   }
   const auto all = this->Spread->group().gatherItems(std::vector<double>(values, values + count));
   std::fill_n(values, count, 0.0);
+  // Sum in the order of the ranks, so that the result is the same on all.
   for (const std::vector<double>& one : all)
   {
     std::transform(one.begin(), one.end(), values, values, std::plus<>());
@@ -115,6 +116,7 @@ void Ranks::inMemory(const std::function<void()>& work, const char* message) con
     work();
     return;
   }
+  // Catch a failed allocation here, so that all ranks throw together.
   bool fits = true;
   try
   {
@@ -177,7 +179,7 @@ std::vector<Index> Ranks::numberSets(
     return numbers;
   }
   const DistributedMesh& mesh = *this->Spread;
-  // The smallest number of a point spreads over the parts of its set, from rank to rank.
+  // Propagate the smallest point number over the parts of each set, from rank to rank.
   std::vector<double> least(member.size(), 0.0), values(member.size());
   for (Index i = 0; i < n; ++i)
   {
@@ -199,6 +201,7 @@ std::vector<Index> Ranks::numberSets(
     }
     changed = mesh.group().any(changed);
   }
+  // The distinct smallest numbers, in increasing order, are the numbers of the sets on all ranks.
   std::vector<double> own;
   for (Index i = 0; i < n; ++i)
   {

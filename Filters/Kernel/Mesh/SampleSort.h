@@ -16,7 +16,8 @@ namespace tautline
 {
 /**
  * @brief The items for each rank: rank 0 gets the first range of all items, and so on. Samples
- * decide where ranges end, so these are about as long; equal items are in one. Collective.
+ * determine the ends of the ranges, so that their lengths are about equal; equal items are in one
+ * range. Collective.
  * @param sorted the items of this rank in their order
  */
 template <class Item>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SeamFacets.h
- * @brief What identifies a facet on the boundary of a piece on all ranks.
- * Internal: not installed.
+ * @brief The key that identifies a facet on the boundary of a piece on all ranks. Internal: not
+ * installed.
  */
 #ifndef tautline_SeamFacets_h
 #define tautline_SeamFacets_h
@@ -19,7 +19,7 @@
 
 namespace tautline
 {
-/// A point that all ranks measure sizes from. Collective.
+/// A common origin for sizes on all ranks. Collective.
 inline Vec3 commonOrigin(RankGroup& group, const std::vector<RankPiece>& pieces)
 {
   std::vector<Vec3> own;
@@ -45,7 +45,7 @@ struct SeamFacet
 {
   PointKey key;       ///< of the point with the smallest key
   std::uint64_t hash; ///< of all points
-  bool forward;       ///< the sense in which its cell walks round it
+  bool forward;       ///< the direction in which its cell traverses it
 
   bool operator<(const SeamFacet& other) const
   {
@@ -53,10 +53,10 @@ struct SeamFacet
   }
 };
 
-/// A facet that one cell of a piece has.
+/// A facet of one cell of a piece.
 inline SeamFacet seamFacetOf(const RankPiece& piece, Index smallest, const FacetUse& use)
 {
-  // The points in the order in which the cell walks round the facet.
+  // The points in the order in which the cell traverses the facet.
   std::array<Index, MaxFaceNodes> nodes = { smallest, use.others[0], -1, -1 };
   int size = 2;
   if (use.others[1] >= 0)
@@ -89,14 +89,14 @@ inline SeamFacet seamFacetOf(const RankPiece& piece, Index smallest, const Facet
   return facet;
 }
 
-/// A seam facet that a rank has sent: which one of its list.
+/// A seam facet that a rank has sent: its position in the list.
 struct SeamPlace
 {
   std::size_t rank, number;
 };
 
-/// Calls visit(a, b), two places, for each facet that exactly two cells have: cells that meet at a
-/// facet with more are not neighbours there.
+/// Calls visit(a, b) with two positions for each facet of exactly two cells: cells that meet at a
+/// facet with more cells are not neighbors there.
 template <class Facet, class Visit>
 void forEachSeamPair(const std::vector<std::vector<Facet>>& received, const Visit& visit)
 {

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TakenCells.h
- * @brief The cells that a rank gets of a mesh on several ranks.
- * Internal: not installed.
+ * @brief The cells that a rank receives in a mesh on several ranks. Internal: not installed.
  */
 #ifndef tautline_TakenCells_h
 #define tautline_TakenCells_h
@@ -18,7 +17,7 @@
 
 namespace tautline
 {
-/// Whether a cell of a view takes part.
+/// Whether a cell of a view is used.
 inline bool takesPart(const MeshView& view, Index cell)
 {
   return cornerType(view.cellTypes[cell]) != CellType::Unsupported;
@@ -26,8 +25,8 @@ inline bool takesPart(const MeshView& view, Index cell)
 
 /**
  * @class tautline::TakenCells
- * @brief The cells that came from all ranks, in an order that follows from their points. They stay
- * in the lists they came in: type, number of points, local points in the order of their numbers.
+ * @brief The cells received from all ranks, in an order determined by their points. They stay in
+ * the received lists: type, number of points, local points in the order of their numbers.
  */
 class TakenCells
 {
@@ -43,7 +42,7 @@ public:
   TakenCells(std::vector<std::vector<std::int32_t>> lists, Index points)
     : Lists(std::move(lists))
   {
-    // By the lowest point first, then the few cells that have it in common.
+    // Sort by the lowest point first, then sort the few cells that share it.
     std::vector<std::size_t> ends(points + 1, 0);
     this->forEach([&ends](const Cell& cell) { ++ends[cell.least + 1]; });
     std::partial_sum(ends.begin(), ends.end(), ends.begin());
@@ -77,7 +76,7 @@ public:
   {
     return this->begin(cell) + this->list(cell)[1];
   }
-  /// Whether the types and the points are the same, in any order.
+  /// Whether the types are the same and the points are the same in any order.
   bool same(const Cell& a, const Cell& b) const
   {
     return this->type(a) == this->type(b) &&
@@ -85,11 +84,12 @@ public:
   }
 
 private:
-  /// A cell and its points in increasing order, without the lowest, which is that of all.
+  /// A cell and its points in increasing order, without the lowest, which is common to all.
   struct Item
   {
     static constexpr int most = 7;
-    std::int32_t points[most]; ///< then -1: of cells with the same points the shorter comes first
+    /// then -1, so that the shorter of two cells with the same first points comes first
+    std::int32_t points[most];
     Cell cell;
   };
 
@@ -148,7 +148,7 @@ private:
     }
   }
 
-  /// Of cells with the same points.
+  /// The order of cells with the same points.
   bool comesFirst(const Cell& a, const Cell& b) const
   {
     return this->type(a) != this->type(b)
@@ -156,7 +156,7 @@ private:
       : std::lexicographical_compare(this->begin(a), this->end(a), this->begin(b), this->end(b));
   }
 
-  /// The same as sort() where a cell has too many points for an Item.
+  /// The same as sort() for cells with too many points for an Item.
   void sortLong(Cell* first, Cell* last) const
   {
     const auto pointsOf = [this](const Cell& cell)

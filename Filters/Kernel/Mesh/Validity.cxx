@@ -13,7 +13,7 @@ namespace tautline
 {
 namespace
 {
-/// Products of edges of such length overflow.
+/// Products of edges of this length overflow.
 constexpr double StrayExtent = 1e100;
 
 /// The longest distance of a vertex from the first along an axis.
@@ -39,7 +39,7 @@ Validity Mesh::classifyCell(const CellTopology& t, const Vec3* vertices, const V
   {
     return corners;
   }
-  // The mirror image, as loadNodes() does.
+  // Take the mirror image, as in loadNodes().
   const double perUnit = 1 / unitOfExtent(extentOf(t, vertices));
   Vec3 p[MaxNodes];
   for (int k = 0; k < t.nodes; ++k)
@@ -54,7 +54,7 @@ Validity Mesh::classifyCell(const CellTopology& t, const Vec3* vertices, const V
 Validity Mesh::classifyCorners(
   const CellTopology& t, const Vec3* vertices, const Vec3* against) const
 {
-  // Cells of extreme size are scaled, as normalizeExtents() does.
+  // Scale cells of extreme size, as in normalizeExtents().
   const double perUnit = 1 / unitOfExtent(extentOf(t, vertices));
   Vec3 p[MaxNodes];
   for (int k = 0; k < t.nodes; ++k)
@@ -66,7 +66,7 @@ Validity Mesh::classifyCorners(
   Vec3 normal = against ? *against : this->Normal;
   if (surface && !against)
   {
-    // A surface quadrilateral is judged against its own mean normal.
+    // A surface quadrilateral is classified relative to its own mean normal.
     normal = vectorArea(t, p);
     const double length = norm(normal);
     normal = length > 0 ? (1.0 / length) * normal : normal;
@@ -108,11 +108,11 @@ Validity Mesh::classifyCorners(
 
 namespace
 {
-// What is near a limit is left to classifyCell().
+// Values near a limit are left to classifyCell().
 constexpr double clearTolerance = 2 * Mesh::degenerateTolerance();
 constexpr double smallestProduct = 1e-200, largestProduct = 1e200;
 
-/// The cells of a batch whose corners are valid beyond doubt.
+/// The cells of a batch whose corners are certainly valid.
 Mask clearlyValidCorners(const Mesh& mesh, const CellTopology& t, const CellVertices& batch)
 {
   Packet normal[3];
@@ -179,7 +179,7 @@ void boundDeterminant(const CellVertices& batch, Packet& least, Packet& lengths2
   lengths2 *= squares(edges.w, of);
 }
 
-/// The cells of a batch that are valid beyond doubt.
+/// The cells of a batch that are certainly valid.
 template <int Nodes>
 Mask clearlyValid(const Mesh& mesh, const CellTopology& t, const CellVertices& batch)
 {
@@ -207,7 +207,7 @@ void Mesh::classifyCells(signed char* validity, int threads) const
   {
     std::fill(validity, validity + this->View.numberOfCells, NotMeasured);
   }
-  // In a mesh of ordinary size, cells that are many times larger have a vertex astray.
+  // In a mesh of ordinary size, cells that are many times larger have a stray vertex.
   const bool ordinary = unitOfExtent(coordinateRange(this->View).extent) == 1;
   for (const CellBlock& block : this->Blocks)
   {

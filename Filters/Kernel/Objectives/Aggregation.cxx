@@ -9,7 +9,7 @@ namespace tautline
 {
 namespace
 {
-constexpr double weakest = 0.25; // coupling that joins rows, relative to the strongest
+constexpr double weakest = 0.25; // weakest coupling that joins rows, relative to the strongest
 
 /// The rows of each aggregate.
 struct Members

@@ -14,7 +14,7 @@
 
 namespace tautline
 {
-/// Which rows couple how strongly: the columns of each row, and one number each.
+/// The couplings of rows: the columns of each row, with one strength each.
 struct Graph
 {
   std::vector<std::int32_t> starts, columns;
@@ -23,7 +23,7 @@ struct Graph
 
 /**
  * @brief Joins rows in pairs: each row in turn with the row not yet joined that it couples to most
- * strongly. A row stays alone where these couplings are weak beside its strongest.
+ * strongly. A row stays single if these couplings are weak compared with its strongest one.
  * @param aggregate of each row
  * @return the number of aggregates
  */
@@ -32,18 +32,19 @@ std::int32_t pairUp(const Graph& graph, std::vector<std::int32_t>& aggregate);
 /**
  * @brief The graph of the aggregates.
  * @param count of the aggregates
- * @param places in it of each place of the fine one
+ * @param the position in it for each position of the fine graph
  */
 Graph joined(const Graph& fine, const std::vector<std::int32_t>& aggregate, std::int32_t count,
   std::vector<std::int32_t>& places);
 
-/// Rows joined in pairs, several times.
+/// Rows joined in pairs several times.
 struct Aggregates
 {
-  Graph graph;                         ///< of the aggregates
-  std::vector<std::int32_t> ofRow;     ///< the aggregate of each row
-  std::vector<std::int32_t> places;    ///< in the graph, of each place of the fine one
-  std::vector<std::int32_t> diagonals; ///< the place of each aggregate's own column
+  Graph graph;                     ///< of the aggregates
+  std::vector<std::int32_t> ofRow; ///< the aggregate of each row
+  /// the position in the graph, for each position of the fine graph
+  std::vector<std::int32_t> places;
+  std::vector<std::int32_t> diagonals; ///< the position of the diagonal column of each aggregate
 };
 Aggregates aggregate(Graph fine, int pairings);
 }

@@ -20,7 +20,7 @@ namespace
 {
 constexpr double atOnce = 1 << 30; // bytes that ranks gather; MPI takes twice as many
 
-/// The distinct numbers of a list, ascending; the list becomes their places.
+/// The distinct numbers of a list, ascending; replaces the list by their positions.
 std::vector<std::int32_t> compress(std::vector<std::int32_t>& list)
 {
   std::vector<std::int32_t> distinct = list;
@@ -34,8 +34,8 @@ std::vector<std::int32_t> compress(std::vector<std::int32_t>& list)
   return distinct;
 }
 
-/// The rows of a graph that each rank has, put together: the number of each row, how many columns
-/// it has, these, and their strengths.
+/// Gathers the rows of a graph from all ranks: the number of each row, its number of columns, the
+/// columns, and their strengths.
 Graph gathered(const Ranks& ranks, const std::vector<std::int32_t>& numbers,
   const std::vector<std::int32_t>& lengths, const std::vector<std::int32_t>& columns,
   const std::vector<float>& strengths)
@@ -46,7 +46,7 @@ Graph gathered(const Ranks& ranks, const std::vector<std::int32_t>& numbers,
   ranks.inMemory(
     [total]
     {
-      // The graph, what comes from the ranks, and the graphs of pairs.
+      // The graph, the data from the ranks, and the graphs of pairs.
       constexpr double copies = 4;
       const auto entries = static_cast<double>(total);
       const double bytes = sizeof(float) * entries > 2 * atOnce
@@ -55,6 +55,7 @@ Graph gathered(const Ranks& ranks, const std::vector<std::int32_t>& numbers,
       requireMemory(bytes, "the graph of Newton's method", "choose Local Newton");
     },
     "The mesh is too large for Newton's method: choose Local Newton or L-BFGS.");
+  // Assemble the rows of all ranks, so that each rank has the whole graph.
   const auto rowsOf = group.gatherItems(numbers), lengthsOf = group.gatherItems(lengths);
   Graph graph;
   graph.starts.assign(rows + 1, 0);
@@ -109,6 +110,7 @@ void BlockJacobiMultigrid::invertDiagonals()
       own[Dim * i + c] = blockOf(a.diagonals[owned[i]])[(Dim + 1) * c];
     }
   }
+  // addOutside() also needs the diagonals of rows of other ranks.
   this->Rows.spread(own.data(), this->Diagonal, Dim);
   this->Inverse.resize(Dim * Dim * count);
   forEachChunk(static_cast<Index>(count), this->Threads,
@@ -165,7 +167,7 @@ void BlockJacobiMultigrid::removeTranslation(double* z)
 }
 
 //------------------------------------------------------------------------------
-/// How strongly all rows of all ranks couple, by their numbers.
+/// The coupling strengths of all rows on all ranks, by their numbers.
 template <int Dim>
 Graph BlockJacobiMultigrid::couplings(const std::vector<std::int32_t>& numbers) const
 {
@@ -204,10 +206,13 @@ void BlockJacobiMultigrid::aggregate()
   Aggregates found = tautline::aggregate(std::move(graph), pairings);
   const auto count = static_cast<Index>(found.diagonals.size());
   this->Coarse.reset();
+  // If aggregation hardly reduces the number of rows, a coarse level does not pay off.
   if (static_cast<double>(count) > slowCoarsening * static_cast<double>(found.ofRow.size()))
   {
     return;
   }
+  // Store for each owned row its aggregate, and for each of its blocks the position in the coarse
+  // matrix.
   this->Aggregate.resize(this->Rows.rows());
   for (std::size_t row = 0; row < this->Aggregate.size(); ++row)
   {
@@ -247,7 +252,8 @@ void BlockJacobiMultigrid::addUp(const std::vector<std::vector<std::int32_t>>& p
   }
   const double bytes =
     static_cast<double>(sizeof(double)) * static_cast<double>(total) * components;
-  const int step = bytes > atOnce ? 1 : components; // components that are gathered together
+  // Gathering all components at once needs memory for the contributions of all ranks.
+  const int step = bytes > atOnce ? 1 : components; // number of components gathered together
   std::fill(to.begin(), to.end(), 0.0);
   for (int first = 0; first < components; first += step)
   {
@@ -279,6 +285,8 @@ void BlockJacobiMultigrid::fillCoarse()
   const BlockMatrixView& a = this->Matrix;
   const std::vector<std::int32_t>& owned = this->Rows.owned();
   const int rank = this->Rows.group().rank();
+  // The coarse matrix is the Galerkin product: sum the blocks of this rank by coarse position, then
+  // over the ranks.
   std::vector<double> own(Dim * Dim * this->RankPlaces[rank].size(), 0.0);
   for (std::size_t i = 0; i < owned.size(); ++i)
   {
@@ -383,7 +391,8 @@ void BlockJacobiMultigrid::cycle(const double* r, double* z)
     this->subtractProduct<Dim>(this->All.data(), this->Rest.data());
   }
   smooth(this->Rest.data());
-  // Translations of everything, which the smoother brings in where no point is held, would grow.
+  // If no point is held, remove the rigid translations that the smoother introduces: they would
+  // grow.
   if (this->Floating)
   {
     this->removeTranslation<Dim>(z);

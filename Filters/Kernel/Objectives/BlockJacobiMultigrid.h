@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BlockJacobiMultigrid.h
- * @brief Multigrid for a matrix whose rows are spread over ranks.
- * Internal: not installed.
+ * @brief Multigrid for a matrix whose rows are distributed over ranks. Internal: not installed.
  *
- * The aggregates and the coarse matrices are the same however the rows are spread, to rounding: all
- * ranks have the graph of all rows while aggregates are found, and all coarse levels, on which they
- * do the same work. Only the finest level is divided. There the smoother is block Jacobi, with half
- * of the sizes of the couplings added to the diagonals (A. Baker et al., "Multigrid smoothers for
- * ultraparallel computing", SIAM J. Sci. Comput. 33, 2011), instead of Gauss-Seidel, which depends
- * on the order of the rows. A cycle needs one exchange of values about the parts and one sum of a
- * coarse vector over the ranks. So the memory of a rank has a part that does not shrink with more
- * ranks: 8 bytes per coupling of two free points, and about an eighth of the whole matrix.
+ * The aggregates and the coarse matrices are independent of the distribution of the rows, up to
+ * rounding: all ranks have the graph of all rows while aggregates are found, and all coarse levels,
+ * on which they perform the same work. Only the finest level is distributed. There, the smoother is
+ * block Jacobi, with half of the sizes of the couplings added to the diagonals (A. Baker et al.,
+ * "Multigrid smoothers for ultraparallel computing", SIAM J. Sci. Comput. 33, 2011), instead of
+ * Gauss-Seidel, which depends on the order of the rows. A cycle needs one halo exchange and one sum
+ * of a coarse vector over the ranks. The memory of a rank therefore has a part that does not shrink
+ * with more ranks: 8 bytes per coupling of two free points, and about an eighth of the whole
+ * matrix.
  */
 #ifndef tautline_BlockJacobiMultigrid_h
 #define tautline_BlockJacobiMultigrid_h
@@ -29,14 +29,14 @@ public:
   BlockJacobiMultigrid(const MatrixRows& rows, int threads);
 
   /**
-   * @brief See GridHierarchy. Collective, as apply().
-   * @param matrix a row for each of rows(), of which those of other ranks are not used
+   * @brief See GridHierarchy. Collective, like apply().
+   * @param matrix a row for each of rows(); rows of other ranks are not used
    */
   void build(const BlockMatrixView& matrix) override;
   void apply(const double* r, double* z) override;
 
 private:
-  /// See GridRows.h: of all rows here.
+  /// See GridRows.h; for all local rows.
   template <int Dim>
   auto diagonals() const
   {
@@ -58,10 +58,10 @@ private:
   void fillCoarse();
   template <int Dim>
   void cycle(const double* r, double* z);
-  /// rest -= A x, of own rows; x of all rows.
+  /// rest -= A x for owned rows; x has all rows.
   template <int Dim>
   void subtractProduct(const double* x, double* rest) const;
-  /// Sums over the ranks of what each has at the places listed, `components` numbers each.
+  /// Sums over the ranks at the listed positions, `components` numbers each.
   void addUp(const std::vector<std::vector<std::int32_t>>& places, const std::vector<double>& own,
     int components, std::vector<double>& to) const;
 
@@ -69,21 +69,22 @@ private:
   int Threads, Reused = 0;
   bool Floating = false; ///< see isFloating()
   BlockMatrixView Matrix;
-  std::vector<double> Diagonal;       ///< entries, of all rows
-  std::vector<double> Inverse;        ///< blocks, of own rows
-  std::vector<double> All, Rest, Own; ///< work space: of all rows, of own rows, of own aggregates
-  std::vector<double> Component;      ///< of own rows, where the matrix is floating
+  std::vector<double> Diagonal; ///< entries, for all rows
+  std::vector<double> Inverse;  ///< blocks, for owned rows
+  /// work space: for all rows, for owned rows, for owned aggregates
+  std::vector<double> All, Rest, Own;
+  std::vector<double> Component; ///< for owned rows, if the matrix is floating
 
   // The next level, on all ranks.
-  std::unique_ptr<Multigrid> Coarse; ///< null where rows hardly couple
+  std::unique_ptr<Multigrid> Coarse; ///< null if rows hardly couple
   BlockMatrixView CoarseMatrix;
   std::vector<std::int32_t> Starts, Columns, Diagonals;
   std::vector<double> Blocks, R, Z;
-  std::vector<std::int32_t> Aggregate;   ///< of each row here
-  std::vector<std::int32_t> AggregateOf; ///< of each own row: in the list of this rank
-  std::vector<std::int32_t> PlaceOf;     ///< of each block of own rows: in the list of this rank
-  std::vector<Index> PlaceStarts;        ///< of each own row
-  /// Of each rank: the aggregates and the coarse blocks that its rows add to.
+  std::vector<std::int32_t> Aggregate;   ///< for each local row
+  std::vector<std::int32_t> AggregateOf; ///< for each owned row: in the list of this rank
+  std::vector<std::int32_t> PlaceOf;     ///< for each block of owned rows: in the list of this rank
+  std::vector<Index> PlaceStarts;        ///< for each owned row
+  /// Per rank: the aggregates and the coarse blocks to which its rows contribute.
   std::vector<std::vector<std::int32_t>> RankAggregates, RankPlaces;
 };
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ElementFunction.h
- * @brief What an objective makes of one element's metric, with its derivative.
- * Internal: not installed.
+ * @brief The term of an objective for the metric of one element, with its derivative. Internal: not
+ * installed.
  */
 #ifndef tautline_ElementFunction_h
 #define tautline_ElementFunction_h
@@ -14,16 +14,16 @@
 
 namespace tautline
 {
-/// Which elements an objective is infinite on.
+/// The condition under which an objective is infinite on an element.
 enum class Fault
 {
   None,
   Zero,        ///< q = 0
   NotPositive, ///< q <= 0
-  Jacobian     ///< a corner Jacobian that is not positive, which q does not show
+  Jacobian     ///< a corner Jacobian is not positive, which q does not reveal
 };
 
-/// The lanes with a corner Jacobian that is not positive, by the measure of Mesh::classifyCells().
+/// The lanes with a corner Jacobian that is not positive, as in Mesh::classifyCells().
 inline Mask jacobianFaults(const BatchContext& context, const Batch& batch)
 {
   const CellTopology& topology = *context.topology;
@@ -79,7 +79,7 @@ inline Packet raised(Packet x, double power)
   return result;
 }
 
-/// The largest exponents and the sum in units of them, so far; lane by lane.
+/// The largest exponents so far and the sum relative to them, lane by lane.
 struct ScaledSums
 {
   Packet unit = broadcast(-HUGE_VAL);
@@ -91,10 +91,10 @@ struct ElementFunction
 {
   ObjectiveTemplate objectiveTemplate;
   double power;
-  double sign; ///< -1 where larger is better
+  double sign; ///< -1 if larger is better
   Fault fault;
   const double* weights; ///< per cell, or null
-  double totalWeight;    ///< of the cells the metric is defined on
+  double totalWeight;    ///< of the cells on which the metric is defined
 
   Packet weightsOf(const Batch& batch) const
   {
@@ -106,7 +106,8 @@ struct ElementFunction
     return w;
   }
 
-  /// The elements at fault; also those without a value of a user's metric, see replaceNonFinite().
+  /// The elements at fault, including elements without a value of a user metric, see
+  /// replaceNonFinite().
   Mask faults(const BatchContext& context, const Batch& batch) const
   {
     const Mask none = batch.value != batch.value;
@@ -123,7 +124,7 @@ struct ElementFunction
     }
   }
 
-  /// The term of a sum and its derivative by q.
+  /// The term of a sum and its derivative with respect to q.
   template <ObjectiveTemplate Template>
   void term(const BatchContext& context, const Batch& batch, Packet& value, Packet& slope) const
   {
@@ -160,8 +161,8 @@ struct ElementFunction
     slope = finiteOrZero(slope);
   }
 
-  /// What is averaged by PowerMean (|q|^s) or put into the exponent by Maximum (k s q), and its
-  /// derivative by q.
+  /// The quantity averaged by PowerMean (|q|^s) or used as the exponent by Maximum (k s q), and its
+  /// derivative with respect to q.
   template <ObjectiveTemplate Template>
   void exponent(const BatchContext& context, const Batch& batch, Packet& y, Packet& dy) const
   {
@@ -186,7 +187,7 @@ struct ElementFunction
     dy = select(faulty, Packet{}, finiteOrZero(dy));
   }
 
-  /// The factor a term takes when the unit of the others changes.
+  /// The factor for a term if the unit of the sum changes.
   template <ObjectiveTemplate Template>
   Packet scaled(Packet y, Packet unit) const
   {
@@ -267,8 +268,8 @@ struct ElementFunction
   }
 
   /**
-   * @brief The share of each element in a PowerMean or Maximum of value F, and its derivative by q:
-   * the shares add up to 1 where the mean is F.
+   * @brief The share of each element in a PowerMean or Maximum of value F, and its derivative with
+   * respect to q: the shares add up to 1 if the mean is F.
    */
   template <ObjectiveTemplate Template>
   void share(

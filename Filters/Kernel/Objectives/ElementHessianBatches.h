@@ -4,21 +4,22 @@
  * @brief The second derivatives of the terms of an objective, for batches of elements of one type.
  * Internal: not installed.
  *
- * Coordinates are those of the mesh's own space: two in the plane of a planar mesh, three in a
- * volume (see hessianAxes()); two in the plane of each element of a surface (see elementAxes()). An
- * element does not change under translation, so that its Hessian acts on the vectors from its first
- * node to the others: 9 x 9 numbers for a tetrahedron, of which one half is kept.
+ * Coordinates have the dimension of the mesh: two in the plane of a planar mesh, three in a volume
+ * (see hessianAxes()), and two in the plane of each element of a surface (see elementAxes()).
+ * Elements are translation invariant, so that the Hessian acts on the vectors from the first node
+ * to the others: 9 x 9 numbers for a tetrahedron, of which one half is stored.
  *
- * The Hessian of the inverse mean ratio is analytic. With N = |T|^2 and D = det T of a corner (see
- * TargetMetrics.h), the ratio is a function q(N, D), N is quadratic in the edges of the corner and
- * D linear in each of them. For the other metrics it is made of central differences of the analytic
- * gradients.
+ * The Hessian of the inverse mean ratio is analytic. With N = |T|^2 and D = det T at a corner (see
+ * TargetMetrics.h), the ratio is a function q(N, D), where N is quadratic in the edges of the
+ * corner and D is linear in each of them. For the other metrics, central differences of the
+ * analytic gradients are used.
  *
- * N / D^(2/n) is a convex function of T and D together, and falls with D. So the Hessian is a
- * positive semidefinite part and the second derivatives of D, times a factor below 0. The latter
- * can be left out: they cancel where the factor is the same in all elements round a point, as the
- * volume of these elements is that of their hull. (V. Garanzha et al., "Foldover-free maps in 50
- * lines of code", ACM Trans. Graph. 40, 2021, section 4, do so for a similar function.)
+ * N / D^(2/n) is a jointly convex function of T and D, and decreases with D. The Hessian is
+ * therefore the sum of a positive semidefinite part and the second derivatives of D times a
+ * negative factor. The latter can be omitted: they cancel if the factor is the same in all elements
+ * around a point, because the total volume of these elements does not depend on the point. (V.
+ * Garanzha et al., "Foldover-free maps in 50 lines of code", ACM Trans. Graph. 40, 2021, section 4,
+ * do so for a similar function.)
  */
 #ifndef tautline_ElementHessianBatches_h
 #define tautline_ElementHessianBatches_h
@@ -30,7 +31,7 @@
 
 namespace tautline
 {
-/// Rows of the Hessian of an element, and numbers in its lower triangle.
+/// The number of rows of the Hessian of an element, and of entries in its lower triangle.
 template <int Dim>
 constexpr int rowsFor(int nodes)
 {
@@ -47,7 +48,7 @@ constexpr int triangleEntry(int row, int column)
 }
 
 /// The axes of the coordinates in which Hessians are taken: right-handed for the elements, so that
-/// a mirrored mesh has mirrored axes. Two of a planar mesh, else three.
+/// a mirrored mesh has mirrored axes. Two for a planar mesh, otherwise three.
 inline std::array<Vec3, 3> hessianAxes(const Mesh& mesh)
 {
   if (mesh.dimension() == Dimension::Planar)
@@ -58,8 +59,8 @@ inline std::array<Vec3, 3> hessianAxes(const Mesh& mesh)
   return { Vec3{ mesh.mirrored() ? -1.0 : 1.0, 0, 0 }, Vec3{ 0, 1, 0 }, Vec3{ 0, 0, 1 } };
 }
 
-/// Of each element of a surface: an edge, and the direction at right angles to it in the plane of
-/// the element (of a quadrilateral, across its mean normal).
+/// For each element of a surface: an edge, and the perpendicular direction in the plane of the
+/// element (for a quadrilateral, perpendicular to its mean normal).
 inline void elementAxes(const CellTopology& topology, const Batch& batch, Packet (&axes)[2][3])
 {
   const bool triangle = topology.nodes == 3;
@@ -80,7 +81,7 @@ inline void elementAxes(const CellTopology& topology, const Batch& batch, Packet
   }
 }
 
-/// The axes of a batch's coordinates, which loadNodes() has mirrored in a volume.
+/// The axes of the coordinates of a batch, which loadNodes() has mirrored in a volume.
 template <int Dim>
 void batchAxes(const BatchContext& context, const Batch& batch, Packet (&axes)[Dim][3])
 {
@@ -113,7 +114,7 @@ inline bool hasAnalyticHessian(const Objective& objective)
     (!options.targets || options.targets->metricRoots.empty());
 }
 
-/// Which Hessian of the inverse mean ratio is wanted. That of other metrics is always exact.
+/// The requested Hessian of the inverse mean ratio. For other metrics, it is always exact.
 enum class HessianForm
 {
   Exact, ///< may be indefinite
@@ -127,7 +128,7 @@ struct RatioCorner
 {
   Packet edge[Dim][Dim];
   Packet gram[Dim][Dim];                     ///< N = sum gram[k][l] edge[k] . edge[l]
-  Packet slopeN[Dim][Dim], slopeD[Dim][Dim]; ///< of N and D by each edge
+  Packet slopeN[Dim][Dim], slopeD[Dim][Dim]; ///< of N and D with respect to each edge
   Packet det;                                ///< of the inverse target
   Packet q, qN, qD, qND, qDD;                ///< the ratio and its derivatives; qNN is 0
 };
@@ -181,7 +182,7 @@ void loadRatioTarget(
   }
 }
 
-/// q = N / (n D^(2/n)) with its derivatives, where D > 0.
+/// q = N / (n D^(2/n)) with its derivatives, for D > 0.
 template <int Dim>
 void evaluateRatio(
   const Packet (&x)[MaxNodes][Dim], const std::array<int, 4>& nodes, RatioCorner<Dim>& corner)
@@ -253,7 +254,7 @@ void addRatioHessian(const RatioCorner<Dim>& corner, const std::array<int, 4>& n
   const Packet nd = factor * corner.qND, dd = factor * corner.qDD;
   const Packet n = 2.0 * factor * corner.qN;
   const Packet d = form == HessianForm::Exact ? Packet(factor * corner.qD * corner.det) : Packet{};
-  // The blocks between the edges, then between the nodes: the corner's own node has minus the sums.
+  // The blocks between the edges, then between the nodes: the corner node has minus the sums.
   Packet block[Dim + 1][Dim + 1][Dim][Dim] = {};
   for (int k = 0; k < Dim; ++k)
   {
@@ -271,7 +272,7 @@ void addRatioHessian(const RatioCorner<Dim>& corner, const std::array<int, 4>& n
           {
             value += n * corner.gram[k][l];
           }
-          // D is linear in each edge: its second derivatives couple different edges only.
+          // D is linear in each edge: its second derivatives only couple different edges.
           if (k != l && r != c)
           {
             if constexpr (Dim == 2)
@@ -315,7 +316,7 @@ void addRatioHessian(const RatioCorner<Dim>& corner, const std::array<int, 4>& n
   }
 }
 
-/// The lower triangles of a batch for objectives of which hasAnalyticHessian() is true.
+/// The lower triangles of a batch for objectives with hasAnalyticHessian().
 template <int Nodes, int Dim>
 void ratioHessians(const BatchContext& context, const ElementFunction& function, const Batch& batch,
   HessianForm form, Packet* h)
@@ -336,7 +337,8 @@ void ratioHessians(const BatchContext& context, const ElementFunction& function,
   const CellTopology& topology = *context.topology;
   const int samples = topology.samples;
   const double share = 1.0 / samples;
-  // The cell's value is the mean of the corners' and multiplies their Hessians: values first.
+  // The value of the cell, the mean over the corners, multiplies their Hessians: compute values
+  // first.
   RatioCorner<Dim> corner[Nodes];
   Packet q = {}, slope[rows + Dim] = {};
   for (int s = 0; s < samples; ++s)
@@ -400,7 +402,7 @@ void differences(
   constexpr int rows = rowsFor<Dim>(Nodes);
   Packet axes[Dim][3];
   batchAxes<Dim>(context, batch, axes);
-  // Relative to the first node: far from the origin the step would drown in rounding.
+  // Relative to the first node: far from the origin, the step would be lost in rounding.
   for (int k = Nodes - 1; k >= 0; --k)
   {
     subtract(batch.points[k], batch.points[0], batch.points[k]);
@@ -443,8 +445,8 @@ void differences(
 
 //------------------------------------------------------------------------------
 /**
- * @brief Turns rows and columns p and q of the symmetric matrices a so that a[p][q] becomes 0, and
- * the columns of v with them.
+ * @brief Rotates rows and columns p and q of the symmetric matrices a so that a[p][q] becomes 0,
+ * and also the columns of v.
  */
 template <int Rows>
 void rotate(Packet (&a)[Rows][Rows], Packet (&v)[Rows][Rows], int p, int q)
@@ -475,11 +477,11 @@ void rotate(Packet (&a)[Rows][Rows], Packet (&v)[Rows][Rows], int p, int q)
 //------------------------------------------------------------------------------
 /**
  * @brief Calls work(number of nodes as a constant, batch, nodes, lower triangles) for each batch of
- * elements: at one time only for batches that share no vertex, and in an order that is fixed for
- * each vertex.
+ * elements: concurrently only for batches that share no vertex, and in a fixed order for each
+ * vertex.
  *
- * For PowerMean and Maximum the rank-one term that couples all elements is left out: the derivative
- * of the slopes with the mean or the maximum itself held fixed.
+ * For PowerMean and Maximum the rank-one term that couples all elements is omitted: the derivative
+ * of the slopes is taken with the mean or the maximum itself held fixed.
  */
 template <int Dim, class Work>
 void forEachHessian(const ObjectiveSum& objective, HessianForm form, const Work& work)

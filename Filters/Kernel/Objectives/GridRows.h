@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file GridRows.h
- * @brief What hierarchies of grids have in common: the matrix, and what they need of its rows.
- * Internal: not installed.
+ * @brief Definitions shared by grid hierarchies: the matrix, and functions of its rows. Internal:
+ * not installed.
  *
- * diagonal(row, c) is entry c of the diagonal of a row's own block, also of a row of another rank.
+ * diagonal(row, c) is entry c of the diagonal of the diagonal block of a row, which may be on
+ * another rank.
  */
 #ifndef tautline_GridRows_h
 #define tautline_GridRows_h
@@ -17,13 +18,14 @@
 
 namespace tautline
 {
-/// What the hierarchies of one process and of several ranks have in common.
+/// The common part of the hierarchies of one process and of several ranks.
 namespace multigrid
 {
 constexpr int pairings = 3;            ///< of rows, from a level to the next
 constexpr double slowCoarsening = 0.8; ///< ratio of rows beyond which no coarser level is made
-constexpr double floatingSum = 1e-10;  ///< of a row, relative to the diagonals near it: rounding
-constexpr int rebuildAfter = 4;        ///< matrices of one pattern, after which rows are aggregated
+constexpr double floatingSum = 1e-10;  ///< of a row, relative to nearby diagonals: rounding
+/// number of matrices of one pattern after which rows are aggregated again
+constexpr int rebuildAfter = 4;
 }
 
 /// A sparse matrix of Size x Size blocks with a symmetric pattern, on arrays of the caller.
@@ -31,15 +33,15 @@ struct BlockMatrixView
 {
   int size = 0;                            ///< of a block: 2 or 3
   Index rows = 0;                          ///< of blocks
-  const std::int32_t* starts = nullptr;    ///< rows + 1 places
-  const std::int32_t* columns = nullptr;   ///< of each place, ascending within a row
-  const std::int32_t* diagonals = nullptr; ///< place of the diagonal block of each row
-  const double* blocks = nullptr;          ///< size x size numbers a place, row by row
+  const std::int32_t* starts = nullptr;    ///< rows + 1 positions
+  const std::int32_t* columns = nullptr;   ///< of each position, ascending within a row
+  const std::int32_t* diagonals = nullptr; ///< position of the diagonal block of each row
+  const double* blocks = nullptr;          ///< size x size numbers per position, row by row
 };
 
 /**
- * @brief What is added to the diagonal of a row for its couplings to rows outside a range, which
- * sweeps do not see: half of the sum of their sizes, in units of the diagonals. The smoother then
+ * @brief The term added to the diagonal of a row for its couplings to rows outside a range, which
+ * sweeps ignore: half of the sum of their sizes, in units of the diagonals. The smoother then
  * converges (A. Baker et al., "Multigrid smoothers for ultraparallel computing", SIAM J. Sci.
  * Comput. 33, 2011: l1 smoothers).
  */
@@ -68,8 +70,8 @@ void addOutside(const BlockMatrixView& a, Index row, Index begin, Index end,
   }
 }
 
-/// By what couplings of a row are multiplied, so that no number leaves the range of float: in units
-/// of the diagonal.
+/// The scale of the couplings of a row, in units of the diagonal, so that all numbers stay in the
+/// range of float.
 template <int Dim, class Diagonal>
 double unitOf(Index row, const Diagonal& diagonal)
 {
@@ -81,7 +83,7 @@ double unitOf(Index row, const Diagonal& diagonal)
   return trace > 0 ? 1 / std::sqrt(trace) : 0.0;
 }
 
-/// The coupling of rows: the size of what their block adds to the rigidity.
+/// The coupling of rows: the size of the contribution of their block to the rigidity.
 template <int Dim>
 float couplingOf(const double* block, double unitOfRow, double unitOfColumn)
 {
@@ -97,8 +99,8 @@ float couplingOf(const double* block, double unitOfRow, double unitOfColumn)
 template <int Dim, class Diagonal>
 bool isFloatingRow(const BlockMatrixView& a, Index row, const Diagonal& diagonal)
 {
-  // Entries are as exact as the largest of an element, which may be that of a neighbour. Of a
-  // positive semidefinite block the largest is on the diagonal.
+  // The accuracy of entries is relative to the largest entry of an element, which may belong to a
+  // neighbor. In a positive semidefinite block, the largest entry is on the diagonal.
   double sum[Dim * Dim] = {}, size = 0;
   for (std::int32_t i = a.starts[row]; i < a.starts[row + 1]; ++i)
   {

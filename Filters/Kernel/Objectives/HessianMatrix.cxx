@@ -15,7 +15,7 @@ namespace tautline
 {
 namespace
 {
-/// Of the elements of a surface.
+/// The topology of the elements of a surface.
 const CellTopology& topologyWith(int nodes)
 {
   return topology(nodes == 3 ? CellType::Triangle : CellType::Quadrilateral);
@@ -58,7 +58,7 @@ HessianMatrix::HessianMatrix(
   this->Inverse.assign(numbers * this->Rows, 0.0);
 }
 
-/// Throws if the matrix with so many blocks, and what solves its systems, do not fit into memory.
+/// Throws if the matrix with this many blocks and its solver do not fit into memory.
 void HessianMatrix::require(Index blocks) const
 {
   constexpr double coarseGrids = 1; // of multigrid, relative to the matrix
@@ -80,7 +80,7 @@ std::int32_t HessianMatrix::place(std::int32_t row, std::int32_t column) const
                                           : -1;
 }
 
-/// Where the cells at the point of each row begin, and these.
+/// The cells at the point of each row, with the offsets of each row.
 std::pair<std::vector<Index>, std::vector<Index>> HessianMatrix::cellsOfRows() const
 {
   const MeshView& view = this->TheMesh.view();
@@ -140,7 +140,7 @@ void HessianMatrix::findPattern()
     this->PlaceStarts[cell + 1] += this->PlaceStarts[cell];
   }
 
-  // The neighbours of each row, chunk by chunk.
+  // The neighbors of each row, chunk by chunk.
   std::vector<std::vector<std::int32_t>> columns(numberOfChunks(this->Rows));
   std::vector<std::int32_t> lengths(this->Rows, 0);
   forEachChunk(this->Rows, this->Threads,
@@ -189,7 +189,7 @@ void HessianMatrix::findPattern()
   std::partial_sum(lengths.begin(), lengths.end(), this->Starts.begin() + 1);
   this->Diagonal.resize(this->Rows);
 
-  // Where the blocks of each cell go.
+  // The positions of the blocks of each cell.
   this->Places.assign(this->PlaceStarts.back(), -1);
   forEachChunk(this->Rows, this->Threads,
     [&](Index, Index begin, Index end)
@@ -238,7 +238,7 @@ void HessianMatrix::clear()
 }
 
 //------------------------------------------------------------------------------
-/// @tparam Dim coordinates of the elements' Hessians. @tparam Size of the blocks: 3 of a surface
+/// @tparam Dim coordinates of the element Hessians. @tparam Size of the blocks: 3 for a surface
 template <int Dim, int Size>
 void HessianMatrix::addBlocks(const ObjectiveSum& objective, double scale, HessianForm form)
 {
@@ -253,7 +253,7 @@ void HessianMatrix::addBlocks(const ObjectiveSum& objective, double scale, Hessi
       {
         elementAxes(topologyWith(Nodes), batch, axes);
       }
-      // The blocks of the first node are minus the sums of the others'.
+      // The blocks of the first node are minus the sums of the other blocks.
       Packet block[Nodes][Nodes][Dim][Dim];
       for (int r = 0; r < Dim; ++r)
       {
@@ -304,6 +304,7 @@ void HessianMatrix::addBlocks(const ObjectiveSum& objective, double scale, Hessi
                 entries[e] = block[k][m][e / Dim][e % Dim][l];
               }
             }
+            // Collect the summands, so that the sum does not depend on the order of the cells.
             if (this->Orderless)
             {
               for (int e = 0; e < Size * Size; ++e)
@@ -420,8 +421,8 @@ void HessianMatrix::restrict(Index row, const double* projector)
 }
 
 //------------------------------------------------------------------------------
-/// Positive definite inverses: of |eigenvalue|, and of a thousandth of the largest where one is
-/// smaller. Blocks of zeros become the identity.
+/// Positive definite inverses: of |eigenvalue|, but at least of a thousandth of the largest. Blocks
+/// of zeros become the identity.
 template <int Dim>
 void HessianMatrix::invertDiagonal()
 {
@@ -466,7 +467,7 @@ void HessianMatrix::invertDiagonal()
         for (int k = 0; k < Dim; ++k)
         {
           inverse[k] = 1.0 / max(abs(a[k][k]), flattest * largest);
-          // A point without elements, or beyond arithmetic, is left as it is.
+          // The identity for a point without elements or with overflow.
           inverse[k] =
             select((largest > 0.0) & (inverse[k] < HUGE_VAL), inverse[k], broadcast(1.0));
         }

@@ -5,10 +5,10 @@
  * blocks with preconditioners.
  * Internal: not installed.
  *
- * A free point is a row of blocks of hessianAxes() coordinates: 2 x 2 numbers in a planar mesh,
- * 3 x 3 in a volume. Vectors have as many entries a free point. On a surface in space blocks are
- * 3 x 3, too, and hold what happens in the planes of the elements: restrict() each point to its
- * tangent plane.
+ * A free point is a row of blocks of hessianAxes() coordinates: 2 x 2 numbers in a planar mesh, 3 x
+ * 3 in a volume. Vectors have the same number of entries per free point. On a surface in space,
+ * blocks are also 3 x 3 and contain the derivatives in the planes of the elements: restrict() each
+ * point to its tangent plane.
  */
 #ifndef tautline_HessianMatrix_h
 #define tautline_HessianMatrix_h
@@ -34,36 +34,36 @@ public:
   };
 
   /**
-   * @brief Takes the memory it needs; all blocks are 0.
+   * @brief Allocates its memory; all blocks are 0.
    * @param mesh must outlive the matrix
    * @param rowOfPoint row of each point of the mesh, -1 for points that are not free
    * @param rows number of free points
-   * @param threads 0: all cores. The result does not depend on it, bitwise.
-   * Throws Error if there are more blocks than 32-bit numbers.
+   * @param threads 0: all cores. The result does not depend on it, bitwise. Throws Error if there
+   * are more blocks than 32-bit integers can count.
    */
   HessianMatrix(const Mesh& mesh, std::vector<std::int32_t> rowOfPoint, Index rows, Pattern pattern,
     int threads);
 
   int blockSize() const { return this->Size; }
-  /// Entries of a vector.
+  /// The number of entries of a vector.
   std::size_t size() const { return static_cast<std::size_t>(this->Rows * this->Size); }
-  /// Bytes of the blocks and their places.
+  /// The number of bytes of the blocks and their positions.
   std::size_t memory() const;
 
   void clear();
-  /// Whether sums of blocks do not depend on the order of the cells, see OrderlessSums. Costs their
-  /// memory a second time while they are made.
+  /// Whether sums of blocks do not depend on the order of the cells, see OrderlessSums. Needs their
+  /// memory twice during assembly.
   void setOrderless(bool orderless) { this->Orderless = orderless; }
   /**
    * @brief Adds scale times the Hessian of an objective, which may be indefinite, at the points of
-   * the mesh's view. Elements at fault and elements with edges of length 0 add 0. For PowerMean and
-   * Maximum the rank-one term that couples all elements is left out: the derivative of the slopes
-   * with the mean or the maximum itself held fixed.
+   * the mesh view. Elements at fault and elements with edges of length 0 add 0. For PowerMean and
+   * Maximum, the rank-one term that couples all elements is omitted: the derivative of the slopes
+   * is taken with the mean or the maximum itself held fixed.
    */
   void add(const ObjectiveSum& objective, double scale);
   /**
-   * @brief Adds scale times the positive semidefinite part of the Hessian of an objective of which
-   * hasConvexPart() is true; see ElementHessianBatches.h.
+   * @brief Adds scale times the positive semidefinite part of the Hessian of an objective with
+   * hasConvexPart(); see ElementHessianBatches.h.
    */
   void addConvexPart(const ObjectiveSum& objective, double scale);
   /// Whether the positive semidefinite part is known: for sums of the inverse mean ratio or of its
@@ -71,15 +71,15 @@ public:
   static bool hasConvexPart(const Objective& objective);
   static bool hasConvexPart(const ObjectiveSum& objective);
   /**
-   * @brief Replaces the matrix by P A P for points that may move in some directions only, with the
+   * @brief Replaces the matrix by P A P for points that may only move in some directions, with the
    * mean of its diagonal in the other directions.
    * @param row of the point
-   * @param projector the point's block of P, row by row
+   * @param projector the block of P for the point, row by row
    */
   void restrict(Index row, const double* projector);
-  /// Adds a number to the diagonal of a row's own block.
+  /// Adds a number to the diagonal of the diagonal block of a row.
   void addToDiagonal(Index row, double value);
-  /// Prepares precondition(): to be called when the matrix is complete.
+  /// Prepares precondition(): call it when the matrix is complete.
   void factorize();
   /**
    * @brief As factorize(), for a positive semidefinite matrix of the full pattern: precondition()
@@ -89,13 +89,13 @@ public:
   /// The blocks, for another preconditioner.
   BlockMatrixView view() const;
 
-  /// product = A d. Not of the diagonal pattern.
+  /// product = A d. Not for the diagonal pattern.
   void times(const double* d, double* product) const;
   /**
    * @brief z = M^-1 r, with M symmetric and positive definite: the diagonal blocks with the
-   * absolute values of their eigenvalues; in volumes with symmetric Gauss-Seidel inside fixed
-   * ranges of rows, which does not pay in planar meshes. After factorizeByMultigrid() it is only
-   * nearly linear.
+   * absolute values of their eigenvalues; in volumes, with symmetric Gauss-Seidel inside fixed
+   * ranges of rows, which does not pay off in planar meshes. After factorizeByMultigrid() it is
+   * only nearly linear.
    */
   void precondition(const double* r, double* z);
   /// After factorize(): the diagonal blocks alone, which do not depend on the order of the rows.
@@ -131,7 +131,7 @@ private:
   std::vector<Index> PlaceStarts;            ///< of each cell
   std::vector<double> Blocks;                ///< Size x Size numbers for each place
   std::vector<double> Inverse;               ///< of the diagonal blocks
-  std::unique_ptr<Multigrid> Grids;          ///< the preconditioner, if it is that
+  std::unique_ptr<Multigrid> Grids;          ///< null unless multigrid is the preconditioner
 };
 }
 #endif

@@ -19,22 +19,22 @@ namespace tautline
  * @brief A row for each free local point. Vectors have one entry, or a few, for each row that this
  * process owns.
  *
- * On one process it owns all rows: vectors are used where they are. On several ranks the rows are
- * in the order of the global numbers: of the points that the rank owns, and of those about them;
- * what is summed along a row in the order of its columns does not depend on the ranks.
+ * On one process, it owns all rows: vectors are used in place. On several ranks, the rows are in
+ * the order of the global numbers of the owned points and of the points around them; sums along a
+ * row in the order of its columns are independent of the ranks.
  */
 class TAUTLINE_KERNEL_EXPORT MatrixRows
 {
 public:
-  /// @param points those that are free, in the order of the rows on one process; on several ranks
-  /// the owner's count. Collective.
+  /// @param points the free points, on one process in the order of the rows; on several ranks, the
+  /// flags of the owners are used. Collective.
   MatrixRows(
     const std::vector<std::int32_t>& points, Index numberOfPoints, const Ranks& ranks = {});
 
   const Ranks& ranks() const { return this->TheRanks; }
   RankGroup& group() const { return this->TheRanks.mesh().group(); }
   Index rows() const { return static_cast<Index>(this->Points.size()); }
-  /// Row of each local point, -1 for those that are not free.
+  /// The row of each local point; -1 if it is not free.
   const std::vector<std::int32_t>& rowOfPoint() const { return this->RowOfPoint; }
   /// Local point of each row.
   const std::vector<std::int32_t>& points() const { return this->Points; }
@@ -46,15 +46,15 @@ public:
   }
 
   /**
-   * @brief Values of own rows, `components` each, as values of all rows, of which those of other
-   * ranks are received. Collective.
+   * @brief Extends values of owned rows, `components` each, to all rows; the values of other rows
+   * are received from other ranks. Collective.
    * @param all work space for them
-   * @return where they are: on one process `own`
+   * @return their address: on one process `own`
    */
   const double* spread(const double* own, std::vector<double>& all, int components) const;
-  /// The same without communication; values of other ranks' rows are any.
+  /// The same without communication; the values of rows of other ranks are undefined.
   const double* place(const double* own, std::vector<double>& all, int components) const;
-  /// Where values of all rows are to be written, for pick().
+  /// The memory for writing values of all rows, for pick().
   double* target(double* own, std::vector<double>& all, int components) const;
   void pick(const std::vector<double>& all, double* own, int components) const;
 

@@ -19,21 +19,21 @@ using namespace multigrid;
 
 namespace
 {
-constexpr Index coarsest = 60; // rows that are solved by a dense factorization
+constexpr Index coarsest = 60; // number of rows that are solved by a dense factorization
 constexpr int maxLevels = 30;
 constexpr double enough =
-  0.25; // reduction by the first step on a coarse level, that needs no second
-constexpr double heldPivot = 1e-10; // relative, below which a pivot is 0 but for rounding
+  0.25; // reduction in the first step on a coarse level that makes a second unnecessary
+constexpr double heldPivot = 1e-10; // relative pivot size below which a pivot is 0 up to rounding
 }
 
 //------------------------------------------------------------------------------
 struct Multigrid::Level
 {
-  BlockMatrixView matrix; ///< of this level; its arrays are those below except on the finest
+  BlockMatrixView matrix; ///< of this level; except on the finest, it uses the arrays below
   std::vector<std::int32_t> starts, columns, diagonals;
   std::vector<double> blocks;
   std::vector<double> added;           ///< to the diagonals, for the smoother
-  std::vector<double> inverse;         ///< of the diagonal blocks with that
+  std::vector<double> inverse;         ///< of the diagonal blocks including `added`
   std::vector<std::int32_t> aggregate; ///< of each row, on the next level
   std::vector<std::int32_t> places;    ///< of each block, on the next level
   std::vector<double> r, z;            ///< right-hand side and solution, of coarse levels
@@ -129,7 +129,7 @@ void addBlocks(const Level& fine, Level& coarse)
   }
 }
 
-/// Finds the aggregates of a level and makes the next; null where rows hardly couple.
+/// Finds the aggregates of a level and creates the next level; null if rows hardly couple.
 template <int Dim>
 std::unique_ptr<Level> coarsened(Level& fine, int threads)
 {
@@ -153,7 +153,7 @@ std::unique_ptr<Level> coarsened(Level& fine, int threads)
   return coarse;
 }
 
-/// The Cholesky factor of the coarsest matrix; unknowns whose pivot is 0 but for rounding stay 0.
+/// The Cholesky factor of the coarsest matrix; unknowns whose pivot is 0 up to rounding stay 0.
 template <int Dim>
 void factorizeDense(Level& level)
 {
@@ -189,7 +189,7 @@ void factorizeDense(Level& level)
       }
       else
       {
-        // Divided by infinity, what comes from rounding alone vanishes.
+        // Division by infinity removes contributions that are only rounding errors.
         const bool held = !(sum > heldPivot * diagonal && std::isfinite(sum));
         row[c] = held ? std::numeric_limits<double>::infinity() : std::sqrt(sum);
       }
@@ -297,8 +297,7 @@ void forward(const Level& level, int threads, const double* r, double* z, double
         std::copy_n(own, Dim, z + Dim * row);
       }
     });
-  // What the sweep has solved leaves no rest: the couplings to later rows do, and those between
-  // ranges.
+  // The residual consists only of the couplings to later rows and between ranges.
   forEachChunk(a.rows, threads,
     [&](Index, Index begin, Index end)
     {
@@ -396,7 +395,7 @@ void Multigrid::buildLevels()
   }
 }
 
-/// New numbers in the levels there are.
+/// Updates the numbers in the existing levels.
 template <int Dim>
 void Multigrid::refill()
 {
@@ -470,7 +469,7 @@ void Multigrid::cycle(std::size_t i, const double* r, double* z)
         z[Dim * row + c] += correction;
       }
     }
-    // step is used again below: the product goes where it is not needed.
+    // `step` is used below, so store the product in a free array.
     std::vector<double>& product = level.rest;
     const BlockMatrixView& a = level.matrix;
     forEachChunk(a.rows, this->Threads,
@@ -495,7 +494,7 @@ void Multigrid::cycle(std::size_t i, const double* r, double* z)
   this->settle<Dim>(level, z);
 }
 
-/// Translations of everything, which rounding brings in where no point is held, would grow.
+/// If no point is held, removes the rigid translations introduced by rounding: they would grow.
 template <int Dim>
 void Multigrid::settle(const Level& level, double* z) const
 {

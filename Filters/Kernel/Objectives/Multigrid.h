@@ -7,12 +7,12 @@
  *
  * Rows are joined three times in pairs, along their strongest couplings, so that aggregates of up
  * to eight rows follow the directions in which stretched elements couple. The coarse matrix adds
- * the blocks of the rows of each aggregate (piecewise constant interpolation: what the Hessian of
- * an objective leaves unpunished is translation). The smoother is block Gauss-Seidel inside fixed
- * ranges of rows. Each coarse system is solved by at most two steps of flexible conjugate gradients
- * with the next coarser one as preconditioner (K-cycle). Sources: Y. Notay, "An aggregation-based
- * algebraic multigrid method", ETNA 37 (2010); Y. Notay and P. Vassilevski, "Recursive
- * Krylov-based multigrid cycles", Numer. Linear Algebra Appl. 15 (2008).
+ * the blocks of the rows of each aggregate (piecewise constant interpolation, because translations
+ * are the near-kernel of the Hessian of an objective). The smoother is block Gauss-Seidel inside
+ * fixed ranges of rows. Each coarse system is solved by at most two steps of flexible conjugate
+ * gradients with the next coarser one as preconditioner (K-cycle). Sources: Y. Notay, "An
+ * aggregation-based algebraic multigrid method", ETNA 37 (2010); Y. Notay and P. Vassilevski,
+ * "Recursive Krylov-based multigrid cycles", Numer. Linear Algebra Appl. 15 (2008).
  */
 #ifndef tautline_Multigrid_h
 #define tautline_Multigrid_h
@@ -30,18 +30,19 @@ namespace tautline
 TAUTLINE_KERNEL_EXPORT void multiply(
   const BlockMatrixView& a, int threads, const double* x, double* y);
 
-/// A hierarchy of grids: Multigrid below, or the one of several ranks.
+/// A hierarchy of grids: Multigrid below, or the hierarchy for several ranks.
 class GridHierarchy
 {
 public:
   virtual ~GridHierarchy() = default;
   /**
-   * @brief Prepares apply() for a matrix, whose arrays must stay as they are while apply() is used.
-   * Matrices of the same pattern that follow each other share their aggregates, a few at a time.
+   * @brief Prepares apply() for a matrix, whose arrays must stay unchanged while apply() is used. A
+   * few consecutive matrices of the same pattern share their aggregates.
    */
   virtual void build(const BlockMatrixView& matrix) = 0;
   /**
-   * @brief z = M^-1 r, nearly linear and nearly symmetric: for flexible conjugate gradients.
+   * @brief z = M^-1 r, nearly linear and nearly symmetric, for use with flexible conjugate
+   * gradients.
    * @param r, z size numbers for each row that this process owns
    */
   virtual void apply(const double* r, double* z) = 0;
@@ -76,7 +77,7 @@ private:
   void settle(const Level& level, double* z) const;
 
   int Threads, Size = 0, Reused = 0;
-  bool Floating = false;                      ///< the matrix maps translations to 0
+  bool Floating = false;                      ///< whether the matrix maps translations to 0
   std::vector<std::unique_ptr<Level>> Levels; ///< the finest first
 };
 }

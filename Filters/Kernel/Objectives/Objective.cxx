@@ -35,14 +35,14 @@ std::string templateProblem(Metric metric, ObjectiveTemplate objectiveTemplate)
   if (objectiveTemplate == T::SumOfSquares && info.direction == Direction::LargerIsBetter)
   {
     return "A larger value of \"" + label +
-      "\" is better: lowering the sum of its squares would spoil the mesh. Choose a sum of "
+      "\" is better: minimizing the sum of its squares would damage the mesh. Choose a sum of "
       "reciprocals.";
   }
   if (isIn(objectiveTemplate, { T::SumOfReciprocals, T::SumOfSquaredReciprocals }) &&
     info.direction == Direction::SmallerIsBetter)
   {
     return "A smaller value of \"" + label +
-      "\" is better: lowering a sum of its reciprocals would spoil the mesh. Choose the sum of "
+      "\" is better: minimizing a sum of its reciprocals would damage the mesh. Choose the sum of "
       "squares.";
   }
   return "";

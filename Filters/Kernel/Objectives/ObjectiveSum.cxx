@@ -26,7 +26,7 @@ void checkTemplate(const Objective& objective)
   const int number = static_cast<int>(objective.objectiveTemplate);
   if (number < 0 || number > static_cast<int>(T::Maximum))
   {
-    throw Error("There is no objective template number " + std::to_string(number) + ".");
+    throw Error("Unknown objective template number " + std::to_string(number) + ".");
   }
   const std::string problem = templateProblem(objective.metric, objective.objectiveTemplate);
   if (!problem.empty())
@@ -55,7 +55,7 @@ Fault faultOf(const Objective& objective)
   using T = ObjectiveTemplate;
   if (info.barrier)
   {
-    // Only the sign shows inverted elements where no valid element comes near 0.
+    // If no valid element is close to 0, only the sign indicates inverted elements.
     const bool separated =
       (!info.in2D || info.full2D.low > 0) && (!info.in3D || info.full3D.low > 0);
     return separated && info.inverted == InvertedValue::Negative ? Fault::NotPositive
@@ -72,7 +72,7 @@ Fault faultOf(const Objective& objective)
 /// @param defined whether the metric is defined on any element
 [[noreturn]] void throwNoElements(const MetricInfo& info, bool defined)
 {
-  throw Error(defined ? "The weights of all elements are 0: nothing is left to minimize."
+  throw Error(defined ? "The weights of all elements are 0: there is nothing to minimize."
                       : "The metric \"" + std::string(info.label) +
         "\" is not defined on any cell of the mesh. Choose another metric, or convert the cells.");
 }
@@ -139,7 +139,7 @@ double ObjectiveSumState::run(double scale, double* gradient) const
       if constexpr (Template == ObjectiveTemplate::PowerMean ||
         Template == ObjectiveTemplate::Maximum)
       {
-        // Scaled by the largest term; the gradient needs the value first: two passes.
+        // Scale by the largest term; the gradient needs the value first, so use two passes.
         const double F = f.combine<Template>(this->elements.run<false, ScaledSums>(
           [&f](const BatchContext& context, const Batch& batch, ScaledSums& total, Packet&)
           { f.addScaled<Template>(context, batch, total); },
@@ -217,8 +217,8 @@ double ObjectiveSumState::runOnRanks(double scale, double* gradient) const
 
 //------------------------------------------------------------------------------
 /**
- * @brief The terms of a sum, one per cell of the view: 0 where the metric is not defined, +infinity
- * where an element is at fault.
+ * @brief The terms of a sum, one per cell of the view: 0 if the metric is undefined, +infinity if
+ * an element is at fault.
  * @param gradient null, or as in ObjectiveSum::addGradient()
  */
 void ObjectiveSumState::findTerms(double scale, OrderlessSums* gradient, double* terms) const

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ObjectiveSumState.h
- * @brief What an ObjectiveSum holds.
- * Internal: not installed.
+ * @brief The state of an ObjectiveSum. Internal: not installed.
  */
 #ifndef tautline_ObjectiveSumState_h
 #define tautline_ObjectiveSumState_h
@@ -15,7 +14,7 @@
 
 namespace tautline
 {
-/// An objective, the elements it is summed over, and its function of one element.
+/// An objective, its elements, and its function of one element.
 struct ObjectiveSumState
 {
   Objective objective;
@@ -27,7 +26,7 @@ struct ObjectiveSumState
   ObjectiveSumState(const Mesh& mesh, const Objective& objective, int threads, const Ranks& ranks);
   template <bool WithGradient>
   double run(double scale, double* gradient) const;
-  /// The same of a mesh on several ranks.
+  /// The same for a mesh on several ranks.
   double runOnRanks(double scale, double* gradient) const;
 
 private:

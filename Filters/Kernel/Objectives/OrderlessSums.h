@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file OrderlessSums.h
- * @brief Sums that hardly ever depend on the order of their terms.
- * Internal: not installed.
+ * @brief Sums that are almost always independent of the order of their terms. Internal: not
+ * installed.
  */
 #ifndef tautline_OrderlessSums_h
 #define tautline_OrderlessSums_h
@@ -14,15 +14,15 @@ namespace tautline
 {
 /**
  * @class tautline::OrderlessSums
- * @brief Numbers with what rounding takes from them, which is added at the end (T. Ogita, S. Rump
- * and S. Oishi, "Accurate sum and dot product", SIAM J. Sci. Comput. 26, 2005, Sum2). Where cells
- * are visited in an order that depends on how a mesh is cut, the results are the same but in about
- * one of 1e15 cases.
+ * @brief Sums with their accumulated rounding errors, which are added at the end (T. Ogita, S. Rump
+ * and S. Oishi, "Accurate sum and dot product", SIAM J. Sci. Comput. 26, 2005, Sum2). If cells are
+ * visited in an order that depends on the decomposition of a mesh, the results are the same except
+ * in about one of 1e15 cases.
  */
 class OrderlessSums
 {
 public:
-  /// @param sums where they begin and, after finish(), end
+  /// @param sums the initial values and, after finish(), the results
   OrderlessSums(double* sums, std::size_t count)
     : Sums(sums)
     , Rests(count, 0.0)

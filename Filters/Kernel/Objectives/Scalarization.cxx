@@ -9,11 +9,11 @@ namespace tautline
 namespace
 {
 constexpr double infinity = std::numeric_limits<double>::infinity();
-/// The largest value over c, where c is not given: the worst objective leads, the others still
-/// count.
+/// The largest value over the automatic c: the worst objective dominates, but the others still
+/// contribute.
 constexpr double sharpness = 10.0;
-/// Height of the lexicographic barrier half-way to the bound, relative to the objective being
-/// lowered.
+/// The height of the lexicographic barrier halfway to the bound, relative to the objective being
+/// minimized.
 constexpr double barrierHeight = 0.01;
 
 void requirePositive(double value, const std::string& what)
@@ -55,7 +55,7 @@ double logExpMinusOne(double x)
 /// The product of non-negative factors and, as slopes, the products of all others.
 double product(const std::vector<double>& x, std::vector<double>& slopes)
 {
-  // The wide exponents of long double: a partial product overflows only where the whole does.
+  // The wide exponents of long double: a partial product only overflows if the whole product does.
   std::vector<long double> after(x.size() + 1, 1.0L);
   for (std::size_t i = x.size(); i-- > 0;)
   {
@@ -91,15 +91,15 @@ Scalarizer::Scalarizer(const ScalarizationOptions& options, const std::vector<do
   const int method = static_cast<int>(options.method);
   if (method < 0 || method > static_cast<int>(Scalarization::Rao))
   {
-    throw Error("There is no scalarization number " + std::to_string(method) + ".");
+    throw Error("Unknown scalarization number " + std::to_string(method) + ".");
   }
   if (!(options.c >= 0) || !std::isfinite(options.c))
   {
-    throw Error("c of the exponential sum must be above 0, or 0 to have it chosen.");
+    throw Error("c of the exponential sum must be above 0, or 0 for an automatic choice.");
   }
   if (options.onPatches && n > 1 && method > static_cast<int>(Scalarization::WeightedSum))
   {
-    throw Error("This scalarization combines objectives of the whole mesh only: choose exponential "
+    throw Error("This scalarization only combines objectives of the whole mesh: choose exponential "
                 "sum, objective product, equal sum or weighted sum for patches.");
   }
   requirePositive(options.exponent, "The exponent of the exponential weighted method");
@@ -123,6 +123,7 @@ Scalarizer::Scalarizer(const ScalarizationOptions& options, const std::vector<do
         " is not finite at the start: some elements are inverted or degenerate. Untangle the mesh "
         "first.");
     }
+    // Objectives are normalized by their initial distance to the utopia value.
     const double scale = std::abs(initial[i] - this->Utopia[i]);
     this->Scales.push_back(scale > 0 && std::isfinite(scale) ? scale : 1.0);
     largest = std::max(largest, std::abs(initial[i]));
@@ -211,7 +212,7 @@ double Scalarizer::value(const std::vector<double>& objectives, std::vector<doub
       slopes[this->Stage] = 1;
       for (int i = 0; i < this->Stage; ++i)
       {
-        // u = 0 at the value reached, 1 at the bound; the barrier is u^2 / (1 - u).
+        // u is 0 at the value reached and 1 at the bound; the barrier is u^2 / (1 - u).
         const double rise = x[i] - this->Reached[i];
         const double room = this->Options.tolerance * std::abs(this->Reached[i]);
         if (rise > 0 && rise >= room)

@@ -20,8 +20,8 @@ namespace tautline
  * @brief The methods. z_i = (F_i - U_i) / S_i with the utopia values U_i and the scales S_i of
  * Scalarizer.
  *
- * Three of them are minimized in a form that has the same minima as the textbook's, but cannot
- * overflow and whose slopes do not vanish: the logarithm of ExponentialWeighted, the negative
+ * Three of them are minimized in a form that has the same minima as the textbook form, but cannot
+ * overflow and has nonvanishing slopes: the logarithm of ExponentialWeighted, the negative
  * logarithm of Rao's product, a smooth maximum in WeightedMinMax. The numbers are stable: ParaView
  * state files hold them.
  */
@@ -35,13 +35,13 @@ enum class Scalarization : int
   WeightedMinMax = 4,
   ExponentialWeighted = 5, ///< (1/p) ln(sum (exp(p w_i) - 1) exp(p z_i))
   /**
-   * F_1 first; then F_2 while F_1 stays below (1 + tolerance) times what was reached, and so on. A
+   * F_1 first; then F_2 while F_1 stays below (1 + tolerance) times the value reached, and so on. A
    * smooth barrier, zero up to the value reached and infinite at the bound, keeps it there.
    */
   Lexicographic = 6,
   /**
-   * -sum ln(1 - z_i / 2): the product of the distances from twice the initial values (Nash, Rao) is
-   * as large as can be. (With the initial values themselves as the worst allowed, every factor and
+   * -sum ln(1 - z_i / 2): maximizes the product of the distances from twice the initial values
+   * (Nash, Rao). (With the initial values themselves as the worst allowed values, every factor and
    * slope would start at 0.)
    */
   Rao = 7
@@ -52,29 +52,30 @@ struct ScalarizationOptions
   Scalarization method = Scalarization::ExponentialSum;
   /// c of ExponentialSum, in the unit of the objectives; 0 chooses it, see Scalarizer.
   double c = 0.0;
-  /// p of ExponentialWeighted; above 0. The larger, the more the worst objective counts.
+  /// p of ExponentialWeighted; above 0. Larger values emphasize the worst objective.
   double exponent = 1.0;
   /**
-   * @brief By how much an objective of higher rank may rise, relative to its value, while those
-   * after it are reduced (Lexicographic); at least 0. With 0 it may not rise at all.
+   * @brief The relative amount by which an objective of higher rank may increase while later ones
+   * are reduced (Lexicographic); at least 0. With 0, it may not increase at all.
    */
   double tolerance = 0.01;
   /// Utopia values U_i, one per objective, or empty for 0.
   std::vector<double> utopia;
   /**
-   * @brief Local optimizers combine the sums F_i over the elements around the vertex that moves, as
-   * Mesquite does by default, instead of the sums over the whole mesh, which a step may then raise.
-   * The methods (3.8) to (3.10) and the weighted sum have it.
+   * @brief Local optimizers combine the sums F_i over the elements around the moving vertex, as in
+   * Mesquite by default, instead of the sums over the whole mesh, which a step may then increase.
+   * Supported by the methods (3.8) to (3.10) and the weighted sum.
    */
   bool onPatches = false;
 };
 
 /**
- * @brief A scalarization made ready for given objectives and their initial values.
+ * @brief A scalarization prepared for given objectives and their initial values.
  *
- * Scales S_i = |F_i(initial) - U_i|, or 1 where that vanishes. With c = 0 the exponential sum takes
- * c = max |F_i(initial)| / 10 (1 if all vanish): the terms then differ by factors exp(20) at most,
- * and the largest still leads. All functions are stable for F_i / c in the thousands and never NaN.
+ * Scales S_i = |F_i(initial) - U_i|, or 1 if that vanishes. With c = 0, the exponential sum uses c
+ * = max |F_i(initial)| / 10 (1 if all vanish): the terms then differ by factors of at most exp(20),
+ * and the largest still dominates. All functions are stable for F_i / c in the thousands and never
+ * NaN.
  */
 class TAUTLINE_KERNEL_EXPORT Scalarizer
 {
@@ -88,20 +89,20 @@ public:
     const std::vector<double>& initial);
 
   /**
-   * @brief F; +infinity where an objective is infinite or NaN, where F is not defined (a product
-   * with a negative factor, Rao's beyond the worst allowed, Lexicographic beyond a bound) or not
+   * @brief F; +infinity if an objective is infinite or NaN, or if F is undefined (a product with a
+   * negative factor, Rao beyond the worst allowed value, Lexicographic beyond a bound) or not
    * representable.
    */
   double value(const std::vector<double>& objectives) const;
-  /// F and dF/dF_i >= 0 in `slopes`, which are all 0 where F is not finite.
+  /// F and dF/dF_i >= 0 in `slopes`, which are all 0 if F is not finite.
   double value(const std::vector<double>& objectives, std::vector<double>& slopes) const;
 
   /// Lexicographic: the objective that is being reduced; 0 before the first call of next().
   int stage() const { return this->Stage; }
   /**
-   * @brief Lexicographic: the current objective is as low as it gets, at `objectives`; go on to the
-   * next.
-   * @return false if there is none, and always for the other methods.
+   * @brief Lexicographic: call when the current objective has been minimized, at `objectives`, to
+   * continue with the next.
+   * @return false if there is no next objective, and always for the other methods.
    */
   bool next(const std::vector<double>& objectives);
 

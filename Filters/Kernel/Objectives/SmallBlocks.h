@@ -12,7 +12,7 @@
 
 namespace tautline
 {
-/// Of a factorization, relative to the largest diagonal entry of its block.
+/// The smallest pivot of a factorization, relative to the largest diagonal entry of its block.
 constexpr double flattestPivot = 1e-14;
 
 /// y += block x.
@@ -28,8 +28,8 @@ void multiplyAdd(const double* block, const double* x, double* y)
   }
 }
 
-/// The inverse of a symmetric positive semidefinite block, by a Cholesky factorization of it scaled
-/// to a diagonal of 1, with pivots kept off 0.
+/// The inverse of a symmetric positive semidefinite block, by a Cholesky factorization after
+/// scaling to a unit diagonal, with pivots bounded away from 0.
 template <int Dim>
 void invert(const double* block, double* inverse)
 {

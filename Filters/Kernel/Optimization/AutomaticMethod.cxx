@@ -11,12 +11,12 @@ namespace tautline
 {
 namespace
 {
-/// Runs of Newton's method between sweeps, at most; one that reduces the objective by less than
-/// this fraction of it is the last.
+/// The maximum number of Newton runs between sweeps; a run that reduces the objective by less than
+/// this fraction is the last.
 constexpr int maxTurns = 20;
 constexpr double worthTurn = 1e-3;
 
-/// A stage of an optimization, and what it leaves in the result of the run.
+/// A stage of an optimization, and its contribution to the result of the run.
 class Stage
 {
 public:
@@ -49,12 +49,12 @@ private:
   std::vector<IterationRecord>& History;
   StopReason& Reason;
   bool Failed = false, Repaired = false;
-  bool Fits = true;    ///< the matrix of Newton's method, into memory
-  bool TooFar = false; ///< where that led, from the surface in space
+  bool Fits = true;    ///< whether the matrix of Newton's method fits into memory
+  bool TooFar = false; ///< whether its result was too far from the surface in space
 };
 
 //------------------------------------------------------------------------------
-/// Whether Newton's method costs less than the sweeps that would tell how they converge: for
+/// Whether Newton's method costs less than the sweeps needed to estimate their convergence: for
 /// elements whose patches have no closed form.
 bool Stage::startsWithNewton(const IterationRecord& first)
 {
@@ -63,9 +63,9 @@ bool Stage::startsWithNewton(const IterationRecord& first)
 }
 
 //------------------------------------------------------------------------------
-/// Starts near the harmonic map of the input if elements are free of targets there, valid, and the
-/// objective is smaller. It does not depend on how the input is stretched, and is often close to
-/// the minimum.
+/// Starts near the harmonic map of the input if elements have no targets, are valid there, and the
+/// objective is smaller. The map does not depend on how the input is stretched, and is often close
+/// to the minimum.
 void Stage::takeHarmonicStart(const std::vector<double>& start)
 {
   const IterationRecord& first = this->History.front();
@@ -91,7 +91,7 @@ void Stage::takeHarmonicStart(const std::vector<double>& start)
     this->Problem.restart(start);
     return;
   }
-  // As far from a saddle as elements stay valid.
+  // Move away from a saddle as far as elements stay valid.
   constexpr double mostShifted = 0.2, leastShifted = 0.02;
   for (double part = mostShifted; part > leastShifted; part *= 0.5)
   {
@@ -106,10 +106,11 @@ void Stage::takeHarmonicStart(const std::vector<double>& start)
 }
 
 //------------------------------------------------------------------------------
-/// Returns whether that leads further than the sweeps have; if not, their points are kept.
+/// Returns whether the result improves on the sweeps; if not, their points are kept.
 bool Stage::useNewton(Slowness slow, const std::vector<double>& start)
 {
-  // Sweeps smooth what is rough and leave a start that is often further for Newton's method.
+  // Sweeps smooth local roughness, which may yield a start farther from the minimum for Newton's
+  // method.
   this->Problem.store();
   const std::vector<double> swept = this->Problem.points();
   const double reached = this->History.back().objective;
@@ -129,16 +130,16 @@ bool Stage::useNewton(Slowness slow, const std::vector<double>& start)
     this->Problem.restart(swept);
     return false;
   }
-  // From close to the minimum, no iteration may be recorded.
+  // If the start is close to the minimum, no iteration may be recorded.
   const IterationRecord found = this->Problem.record(this->History.back().iteration);
-  // Inverted elements do not count in the objective. Newton's method does not hold single points of
-  // a surface in space that go too far from where it was.
+  // Inverted elements are excluded from the objective. Newton's method cannot hold individual
+  // points of a surface in space that move too far from the original surface.
   this->TooFar =
     this->Problem.moving().dimension() == Dimension::Surface && !this->Problem.isWithinTolerance();
   const bool valid = found.inverted <= this->History.front().inverted && !this->TooFar;
   if (valid && found.objective < this->History.back().objective)
   {
-    const bool atStart = this->History.size() == 1; // whose row stays
+    const bool atStart = this->History.size() == 1; // keep its row
     this->History.resize(this->History.size() + (atStart ? 1 : 0));
     this->History.back() = found;
     this->History.back().iteration += atStart ? 1 : 0;
@@ -161,13 +162,13 @@ bool Stage::mayGoOn() const
 
 //------------------------------------------------------------------------------
 /**
- * @brief Sweeps and Newton's method in turn, while both pay: Newton's method holds some points, or
- * stops short of the minimum, where no step of it reduces the objective.
+ * @brief Alternates sweeps and Newton's method while both pay off: Newton's method holds some
+ * points, or stops before the minimum if no step reduces the objective.
  * @param first the record of the start
  */
 void Stage::takeTurns(const IterationRecord& first)
 {
-  // The same on all ranks, also on one whose points, and so the start, are empty.
+  // The same on all ranks, including a rank without points.
   const bool slides = this->Steps.slidesOnSurface();
   const std::vector<double> start = slides ? std::vector<double>() : this->Problem.points();
   for (int turn = 0; turn < maxTurns; ++turn)
@@ -194,7 +195,7 @@ void Stage::takeTurns(const IterationRecord& first)
     {
       return;
     }
-    // From the start it may have ended at a worse place: it goes on from where sweeps lead.
+    // From the start, it may have ended at a worse result: continue from the result of the sweeps.
     const bool worthAnother = gained
       ? reached - this->History.back().objective > worthTurn * std::abs(reached)
       : this->Fits && !this->TooFar && fromStart && slow != Slowness::Near;

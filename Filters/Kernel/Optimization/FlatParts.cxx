@@ -11,7 +11,7 @@ namespace tautline
 {
 namespace
 {
-/// Points by their coordinates.
+/// Looks up points by their coordinates.
 class PointFinder
 {
 public:
@@ -37,7 +37,7 @@ private:
   std::vector<std::pair<Vec3, Index>> Items;
 };
 
-/// Sets the planes, lines and flags of the points on the parts of the mesh's own model.
+/// Sets the planes, lines and flags of the points on the parts of the model made from the mesh.
 void addModel(const Mesh& mesh, const OptimizeOptions& options, PointSlides& slides)
 {
   const MeshView& view = mesh.view();
@@ -48,7 +48,7 @@ void addModel(const Mesh& mesh, const OptimizeOptions& options, PointSlides& sli
   {
     flat.push_back(isFlatPart(parts[i], options.surfaceTolerance, directions[i]));
   }
-  // A curve beside a curved patch is held: the patch would not cover the same places.
+  // A curve next to a curved patch is held: otherwise the patch would not cover the same region.
   PointFinder onCurves(view);
   for (Index p = 0; p < view.numberOfPoints; ++p)
   {

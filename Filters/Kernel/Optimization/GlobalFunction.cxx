@@ -57,8 +57,8 @@ GlobalFunction::GlobalFunction(OptimizationProblem& problem, Optimizer optimizer
         : nullptr);
   }
   findValidityLevels(problem.moving(), problem.options().threads, this->Start);
-  // An objective that is infinite on inverted elements needs no other check, if these have no
-  // inside.
+  // An objective that is infinite on inverted elements needs no other check if validity is decided
+  // at the corners.
   const bool someInvalid = std::any_of(
     this->Start.begin(), this->Start.end(), [](signed char v) { return v != ValidThroughout; });
   const std::vector<CellBlock>& blocks = problem.moving().blocks();
@@ -80,7 +80,7 @@ std::size_t GlobalFunction::size() const
   return this->Size * this->Rows.numberOfOwned();
 }
 
-/// Whether points may be elsewhere than the steps alone lead.
+/// Whether positions may differ from the start plus the steps.
 bool GlobalFunction::bends() const
 {
   return this->Surface || !this->Outward.empty();
@@ -99,7 +99,7 @@ void GlobalFunction::forEachFree(const Visit& visit) const
 }
 
 //------------------------------------------------------------------------------
-/// Moves the points of the problem alone. @param x of all rows
+/// Moves only the points of the problem. @param x of all rows
 void GlobalFunction::move(const double* x)
 {
   this->forEachFree(
@@ -126,8 +126,8 @@ void GlobalFunction::move(const double* x)
 }
 
 //------------------------------------------------------------------------------
-/// Takes a point back to its limit. At the limit, values do not change with steps outwards; those
-/// inwards are left to sweeps, as the gradient there need not be the same on all ranks.
+/// Moves a point back to its limit. At the limit, outward steps do not change values; inward steps
+/// are left to sweeps, because the gradient there may differ between ranks.
 void GlobalFunction::keepLimit(std::size_t p)
 {
   double* x = &this->Problem.points()[3 * p];
@@ -154,7 +154,7 @@ void GlobalFunction::put(const double* x)
   this->move(this->Rows.spread(x, this->All, this->Size));
   this->Problem.simplices().load(this->Problem.points().data(), this->Problem.options().threads);
   this->Problem.coordinatesChanged();
-  // Points of the piece without a cell here.
+  // Update points of the piece without a local cell.
   this->Problem.ranks().exchange(this->Problem.points().data(), 3);
 }
 
@@ -186,7 +186,8 @@ bool GlobalFunction::isHeld(std::size_t p) const
 }
 
 //------------------------------------------------------------------------------
-/// The part of a vector a point may follow: in a planar mesh's plane, along its line or plane.
+/// The component of a vector that a point may follow: in the plane of a planar mesh, along its line
+/// or plane.
 Vec3 GlobalFunction::project(std::size_t p, Vec3 g) const
 {
   if (this->isHeld(p))
@@ -244,7 +245,7 @@ double GlobalFunction::valueAndGradient(const double* x, double* gradient)
 }
 
 //------------------------------------------------------------------------------
-/// Of the points that are free, along what they may follow.
+/// The gradient of the free points, along their allowed directions.
 void GlobalFunction::takeGradient(double* gradient) const
 {
   this->forEachFree(
@@ -261,7 +262,7 @@ void GlobalFunction::takeGradient(double* gradient) const
 }
 
 //------------------------------------------------------------------------------
-/// Takes the memory for the Hessian.
+/// Allocates the memory for the Hessian.
 void GlobalFunction::makeMatrix()
 {
   std::vector<std::int32_t> rows(this->Problem.moving().view().numberOfPoints, -1);
@@ -276,12 +277,12 @@ void GlobalFunction::makeMatrix()
           this->Problem.options().threads);
     },
     "The matrix of Newton's method does not fit into memory: choose another optimizer, such as "
-    "Local Newton, or take more processes.");
+    "Local Newton, or use more processes.");
   this->Hessian->setOrderless(ranks.several() && !this->Newton);
 }
 
 //------------------------------------------------------------------------------
-/// Lets a point that slides move along its line or plane only, and one that is held not at all.
+/// Restricts a sliding point to its line or plane, and fixes a held point.
 void GlobalFunction::restrict(std::size_t row, std::size_t p)
 {
   const Vec3 line = directionOf(this->Slides.lines, p), plane = directionOf(this->Slides.planes, p);
@@ -308,8 +309,8 @@ void GlobalFunction::restrict(std::size_t row, std::size_t p)
 void GlobalFunction::fillMatrix()
 {
   this->Hessian->clear();
-  // With the positive semidefinite part of each Hessian no direction of Newton's method needs a
-  // shift, and multigrid solves its systems.
+  // With the positive semidefinite part of each Hessian, no Newton direction needs a shift, and
+  // multigrid solves the systems.
   bool convex = this->Newton;
   for (std::size_t i = 0; i < this->Objectives.size(); ++i)
   {
@@ -335,8 +336,8 @@ void GlobalFunction::fillMatrix()
 }
 
 //------------------------------------------------------------------------------
-/// Adds the second derivative of a way along the limit, which is a sphere: a force that draws a
-/// point outwards by so much draws it back to where the limit is farthest out.
+/// Adds the second derivative along the limit, which is a sphere: an outward force pulls a point
+/// along the sphere toward the position farthest in its direction.
 void GlobalFunction::bendAtLimit(std::size_t row, std::size_t p)
 {
   const Vec3 outward = this->outwardOf(p);
@@ -351,8 +352,8 @@ void GlobalFunction::bendAtLimit(std::size_t row, std::size_t p)
 }
 
 //------------------------------------------------------------------------------
-/// Takes the points, which put() has moved, for those that further steps are added to: points at
-/// limits and on surfaces are elsewhere than the steps alone lead. @param x of all rows
+/// Makes the points moved by put() the origin of further steps: points at limits and on surfaces
+/// are not at the start plus the steps. @param x of all rows
 void GlobalFunction::rebase(const double* x)
 {
   this->forEachFree(
@@ -400,7 +401,7 @@ void GlobalFunction::linearize(const double* x)
 }
 
 //------------------------------------------------------------------------------
-/// Takes from steps of the points what leads them off their planes and lines.
+/// Removes the components of steps that leave the planes and lines of the points.
 void GlobalFunction::keepSlides(double* d) const
 {
   this->forEachFree(
@@ -439,7 +440,7 @@ bool GlobalFunction::precondition(const double* r, double* z)
   }
   if (this->hasConstraints())
   {
-    // The coarse grids of multigrid do not have the planes and lines of the points.
+    // The coarse grids of multigrid ignore the planes and lines of the points.
     this->Rows.place(z, this->All, this->Size);
     this->keepSlides(this->Rows.target(z, this->All, this->Size));
     this->Rows.pick(this->All, z, this->Size);

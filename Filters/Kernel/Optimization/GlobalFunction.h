@@ -19,16 +19,16 @@ namespace tautline
 {
 /**
  * @class tautline::GlobalFunction
- * @brief The variables are how far the free points are from where they were at construction, in the
- * axes of coordinateAxes(): two a point in a planar mesh, three in others. Points that slide have
- * gradients along their line or plane only, those that are held none. A point that would go
- * farther than its limit is at the closest place within; while it is at its limit it moves across
- * its way from the start only, see keepLimit(). Points of a surface stay on it, see SurfaceSlides.
+ * @brief The variables are the displacements of the free points since construction, in the axes of
+ * coordinateAxes(): two per point in a planar mesh, otherwise three. Sliding points only have
+ * gradients along their line or plane, held points have none. A point that would exceed its limit
+ * is placed at the closest position within; at its limit, it only moves perpendicular to its
+ * displacement from the start, see keepLimit(). Points of a surface stay on it, see SurfaceSlides.
  *
- * On several ranks the variables of a rank are those of the free points that it owns, and all
- * methods but size() are collective. All cells at these points are here, so that gradients and rows
- * of the Hessian need no sums over ranks: the displacements of the points about them are received
- * before. Preconditioners do not depend on the ranks, to rounding: diagonal blocks, and
+ * On several ranks, a rank has the variables of the free points that it owns, and all methods
+ * except size() are collective. All cells at these points are local, so that gradients and rows of
+ * the Hessian need no sums over ranks: the displacements of the surrounding points are received
+ * beforehand. Preconditioners do not depend on the ranks, up to rounding: diagonal blocks, and
  * BlockJacobiMultigrid for Newton's method with the positive semidefinite part of the Hessian.
  */
 class GlobalFunction : public SmoothFunction
@@ -39,7 +39,7 @@ public:
 
   std::size_t size() const override;
   double valueAndGradient(const double* x, double* gradient) override;
-  /// Throws MemoryError, on all ranks, where the matrix does not fit into the memory of one.
+  /// Throws MemoryError on all ranks if the matrix does not fit into the memory of one.
   void linearize(const double* x) override;
   bool precondition(const double* r, double* z) override;
   bool hessianTimes(const double* d, double* product) override;
@@ -68,26 +68,26 @@ private:
 
   OptimizationProblem& Problem;
   bool Newton;
-  bool Convex = false; ///< the Hessian is its positive semidefinite part
+  bool Convex = false; ///< whether the Hessian is replaced by its positive semidefinite part
   int Size;            ///< coordinates of a point
   const MatrixRows& Rows;
   std::array<Vec3, 3> Axes;
   const PointSlides& Slides;
   std::vector<double> Origin; ///< 3 per point
-  /// Of points with limits, 3 per point: the unit vector from the start of one at its limit, else
-  /// 0; and by what factor its way was shortened. Empty without limits.
+  /// For points with limits, 3 per point: the unit vector from the start to a point at its limit,
+  /// otherwise 0; and the factor by which its displacement was shortened. Empty without limits.
   std::vector<double> Outward, Shortened;
-  std::unique_ptr<SurfaceSlides> Surface; ///< of a surface in space
+  std::unique_ptr<SurfaceSlides> Surface; ///< for a surface in space
   bool Check = true; ///< whether elements may invert without an infinite objective
   std::vector<signed char> Start, Levels; ///< a ValidityLevel per cell: at the start, now
   std::vector<double> Gradient;
   std::vector<double> Objectives, Slopes;
-  /// Per objective without derivatives of its own: the shape, whose Hessian stands for its own in
-  /// the preconditioner.
+  /// Per objective without analytic derivatives: the shape metric, whose Hessian is used in the
+  /// preconditioner.
   std::vector<std::unique_ptr<ObjectiveSum>> Stand;
   std::unique_ptr<HessianMatrix> Hessian;
   std::unique_ptr<GridHierarchy> Grids;
-  std::vector<double> All, Product; ///< of the rows of all points here, on several ranks
+  std::vector<double> All, Product; ///< for the rows of all local points, on several ranks
 };
 }
 #endif

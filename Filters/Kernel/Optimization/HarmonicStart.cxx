@@ -15,7 +15,7 @@ namespace tautline
 {
 namespace
 {
-constexpr int size = 3;            // of a block: coordinates are alike
+constexpr int size = 3;            // of a block: coordinates are treated alike
 constexpr int maxIterations = 100; // of conjugate gradients
 constexpr double residual = 1e-7;  // relative to the first
 
@@ -24,7 +24,7 @@ struct Laplacian
 {
   std::vector<std::int32_t> starts, columns, diagonals;
   std::vector<double> blocks;
-  std::vector<double> right; ///< what the fixed neighbours contribute
+  std::vector<double> right; ///< the contributions of fixed neighbors
 };
 
 Laplacian assemble(const OptimizationProblem& problem, const std::vector<std::int32_t>& rows,
@@ -34,7 +34,7 @@ Laplacian assemble(const OptimizationProblem& problem, const std::vector<std::in
   Laplacian a;
   a.right.assign(static_cast<std::size_t>(size * count), 0.0);
   std::vector<double> degree(count, 0.0);
-  // Each edge once for each element that has it.
+  // List each edge once for each element that has it.
   std::vector<std::pair<std::int32_t, std::int32_t>> entries;
   const auto add = [&](Index p, Index q)
   {
@@ -116,9 +116,9 @@ void requireMemoryFor(const OptimizationProblem& problem)
   {
     edges += static_cast<double>(block.count) * topology(block.type).edges;
   }
-  // Pairs of rows in both directions, before equal ones are joined: in a plane every second is
-  // left, in a volume every fourth or fifth. Lists grow by doubling; the grids have as much as the
-  // matrix.
+  // Pairs of rows in both directions, before equal ones are joined: in a plane, every second one
+  // remains; in a volume, every fourth or fifth. Lists grow by doubling; the grids need as much as
+  // the matrix.
   constexpr double pair = 2 * sizeof(std::int32_t), growth = 2, directions = 2, grids = 2;
   constexpr double block = size * size * sizeof(double) + sizeof(std::int32_t);
   const double left = problem.moving().dimension() == Dimension::Volume ? 0.25 : 0.5;
@@ -126,7 +126,7 @@ void requireMemoryFor(const OptimizationProblem& problem)
   constexpr double vectors = 10;
   requireMemory(
     ofEdge * edges + vectors * size * sizeof(double) * static_cast<double>(view.numberOfPoints),
-    "The harmonic map", "sweeps go on instead");
+    "The harmonic map", "sweeps continue instead");
 }
 
 BlockMatrixView viewOf(const Laplacian& a, Index count)
@@ -189,7 +189,7 @@ std::vector<double> harmonicPoints(OptimizationProblem& problem, const std::vect
   ranks.inMemory(
     [&]
     {
-      requireMemoryFor(problem); // also for what follows, where no rank may fail alone
+      requireMemoryFor(problem); // also covers the following code, where no rank may fail alone
       a = assemble(problem, rows.rowOfPoint(), rows.rows(), start);
       all.resize(static_cast<std::size_t>(size * rows.rows()));
       found.resize(ranks.several() ? all.size() : 0);
@@ -267,6 +267,6 @@ void shiftFreePoints(const OptimizationProblem& problem, double part, std::vecto
       std::copy(shifted.begin(), shifted.end(), points.begin() + 3 * p);
     }
   }
-  ranks.exchange(points.data(), 3); // a copy of a point may miss edges
+  ranks.exchange(points.data(), 3); // a copy of a point may lack edges
 }
 }

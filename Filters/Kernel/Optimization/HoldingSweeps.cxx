@@ -63,7 +63,7 @@ public:
 private:
   static constexpr int maxFailures = 20;
 
-  /// One sweep from `points`, and back where the worst element gets worse.
+  /// One sweep from `points`, undone where the worst element gets worse.
   IterationRecord sweep(const IterationRecord& before, const std::vector<double>& points)
   {
     OptimizationProblem& problem = this->Problem;

@@ -15,10 +15,10 @@
 namespace tautline
 {
 /**
- * @brief Sweeps until that converges, from points at which the guard finds nothing. After each
- * sweep, the points of elements that it has made invalid, or worse than all of the input, go back
- * to where they were before it. Where that raises the objective or takes the surface too far, all
- * go back, and these points stay in the sweeps after it.
+ * @brief Sweeps until convergence, from points that the guard accepts. After each sweep, the points
+ * of elements that it has made invalid, or worse than all elements of the input, are moved back. If
+ * that increases the objective or moves the surface too far, all points are moved back, and these
+ * points are fixed in later sweeps.
  * @param report adds a record to the history; false if that stops the run
  * @param history with the record of these points at its end
  */

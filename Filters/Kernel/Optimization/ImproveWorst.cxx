@@ -10,23 +10,24 @@ namespace tautline
 namespace
 {
 constexpr int maxWorstRounds = 100;
-/// Sweeps of a round, and, in closed form, the fraction of the worst value above which elements are
-/// where the first begins: the others have a share below 1e-5.
+/// The number of sweeps in a round and, for the closed form, the fraction of the worst value above
+/// which elements contribute initially: the others have a share below 1e-5.
 constexpr int sweepsPerRound = 4;
 constexpr double nearWorst = 0.7;
 /// A round that reduces the worst value by less than this fraction is the last.
 constexpr double worthwhile = 1e-3;
-/// p, one after the other: with the first, elements at 0.8 of the worst value have a thousandth of
-/// its share; with the last, those at 0.95.
+/// The successive values of p: with the first, elements at 0.8 of the worst value have a thousandth
+/// of its share; with the last, elements at 0.95.
 constexpr double powers[] = { 32, 128 };
-/// How much more the elements near the worst one count where a round no longer pays, and at most.
+/// The factor by which the weight of elements near the worst one increases when a round no longer
+/// pays off, and its maximum.
 constexpr double stronger = 4;
 constexpr double strongest = 256;
-/// A p-mean that has fallen below this fraction is computed anew: its change in units of the p-th
+/// A p-mean that has fallen below this fraction is recomputed: its change in units of the p-th
 /// power has lost digits.
 constexpr double trusted = 0.9;
 
-/// An objective with the metric that judges the worst element, without targets if it is another.
+/// An objective with the metric of the worst element, without targets if it is a different metric.
 Objective judgedAs(Objective objective, Metric metric, int threads)
 {
   if (metric != objective.metric)
@@ -47,8 +48,8 @@ LocalOptions worstOptions(const OptimizationProblem& problem)
   return options;
 }
 
-/// The sums by the changes relative to where they start.
-/// @param first their values there; empty: one closed form
+/// Scalarizes the sums by their changes relative to the start.
+/// @param first their values at the start; empty: one closed form
 Scalarizer worstScalarizer(
   const std::vector<double>& first, double pull, const std::vector<double>& now)
 {
@@ -62,12 +63,12 @@ Scalarizer worstScalarizer(
   return Scalarizer(options, weights, now);
 }
 
-/// What a round minimizes.
+/// The objectives of a round.
 class WorstObjectives
 {
 public:
   /// @param mean the second sum
-  /// @param pull how much more that counts than the first
+  /// @param pull its weight relative to the first
   WorstObjectives(OptimizationProblem& problem, double worst, const ObjectiveSum* mean, double pull)
     : Pull(pull)
     , Terms(problem.localTerms())
@@ -99,8 +100,8 @@ public:
 
   Scalarizer scalarizer() const { return worstScalarizer(this->First, this->Pull, this->first()); }
 
-  /// Whether both can be reduced relative to where they start: a sum of values that are all 0 is
-  /// at its best, and one that is not finite gives no scale.
+  /// Whether both can be reduced relative to the start: a sum of zeros is already optimal, and a
+  /// nonfinite sum has no scale.
   bool canImprove() const
   {
     return !this->Mean ||
@@ -123,14 +124,14 @@ Objective judgedBy(OptimizationProblem& problem)
     problem.options().threads);
 }
 
-/// Whether the sums of all ranks have one closed form; one without cells takes part in any.
+/// Whether the sums of all ranks have one closed form; ranks without cells support any form.
 bool isFast(OptimizationProblem& problem, Metric judged)
 {
   return !problem.ranks().any(problem.moving().view().numberOfCells > 0 &&
     (problem.localTerms()[0].shapePower == 0 || judged != Metric::InverseMeanRatio));
 }
 
-/// The steps, and the points as they are at best.
+/// The steps, and the best points so far.
 class StepsOfWorst
 {
 public:
@@ -143,8 +144,8 @@ public:
   }
 
   const Objective& judged() const { return this->Judged; }
-  /// The worst value of the metric that judges, among the elements with a free point; infinite
-  /// without any.
+  /// The worst value of the decisive metric among the elements with a free point; infinite if there
+  /// are none.
   double worst()
   {
     this->AtBest = this->Problem.measure(this->Judged);
@@ -167,7 +168,7 @@ public:
    * @brief A few sweeps, and stores the points.
    * @param worst the worst value so far
    * @param power of the second sum
-   * @param pull how much more that counts than the first
+   * @param pull its weight relative to the first
    * @return false without a sweep if one of the sums is 0 already
    */
   bool sweep(double worst, double power, double pull)
@@ -182,7 +183,7 @@ public:
     LocalSweeper sweeper(simplices, this->Problem.moving(), this->Problem.points().data(),
       objectives.terms(), worstOptions(this->Problem), &this->Problem.order());
     const Scalarizer scalarizer = objectives.scalarizer();
-    // The simplices have the targets of the objective, the metric that judges may have none.
+    // The simplices have the targets of the objective; the decisive metric may have none.
     this->OfSimplices = this->Fast && !this->Problem.ranks().any(!simplices.uniform());
     if (this->OfSimplices)
     {
@@ -206,7 +207,7 @@ public:
     return true;
   }
 
-  /// Keeps the points as they are; and goes back to those kept last, or to those of the start.
+  /// Keeps the current points; the counterpart restores the last kept points or the start.
   void keep()
   {
     std::copy_n(this->Problem.simplices().coordinates(), this->size(), this->Best.begin());
@@ -225,7 +226,7 @@ private:
     return VertexStride * static_cast<std::size_t>(this->Problem.simplices().freeVertices());
   }
 
-  /// The p-mean of the metric that judges. Kept from round to round.
+  /// The p-mean of the decisive metric. Kept from round to round.
   const ObjectiveSum* meanOf(double power)
   {
     if (!this->Mean || this->Power != power)
@@ -245,7 +246,7 @@ private:
   std::unique_ptr<ObjectiveSum> Mean;
   double Power = 0;
   std::vector<double> Best;
-  OptimizationProblem::Measured AtBest, Now; ///< by the metric that judges, not of simplices
+  OptimizationProblem::Measured AtBest, Now; ///< with the decisive metric, not for simplices
 };
 }
 
@@ -272,7 +273,7 @@ bool improveWorst(OptimizationProblem& problem, const QualityGuard& guard,
 
   const double* power = std::begin(powers);
   double pull = 1.0;
-  bool lowered = false; // the pull, once, because its cost was too high
+  bool lowered = false; // whether the pull was reduced once because its cost was too high
   for (int round = 0; round < maxWorstRounds && !problem.outOfTime(); ++round)
   {
     if (!steps.sweep(worst, *power, pull))

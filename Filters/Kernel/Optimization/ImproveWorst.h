@@ -15,24 +15,24 @@
 
 namespace tautline
 {
-/// How far to go.
+/// The limits of the improvement.
 struct WorstLimits
 {
-  /// How much the mean of the first objective's metric may get worse, as a fraction of it.
+  /// How much the mean of the metric of the first objective may get worse, as a fraction.
   double allowance = 0.0;
   /// Stop as soon as no element is worse than the worst one of the input.
   bool onlyAsInput = false;
-  /// The mean that the allowance counts from; not set: that at the start.
+  /// The reference mean of the allowance; not set: the mean at the start.
   std::optional<double> mean = std::nullopt;
 };
 
 /**
- * @brief Sweeps with sum q^2 + K sum (q / q_w)^p, p large and q_w the worst value so far: only
- * elements near the worst feel the second sum. Stops when the worst value no longer improves, or
- * the mean has got worse by the allowance, which does not count as long as the worst element is
- * worse than that of the input. The metric of the worst element is worstMetric(); meshes of cells
- * with several corners, and other metrics than the inverse mean ratio, take its p-mean in place of
- * the second sum.
+ * @brief Sweeps with sum q^2 + K sum (q / q_w)^p, with large p and the worst value q_w so far: the
+ * second sum only affects elements near the worst. Stops when the worst value no longer improves,
+ * or when the mean has worsened by the allowance, which is ignored as long as the worst element is
+ * worse than in the input. The metric of the worst element is worstMetric(); meshes of cells with
+ * several corners, and metrics other than the inverse mean ratio, use its p-mean instead of the
+ * second sum.
  * @param report called after each round that improved the mesh; returns false to stop
  * @return whether the time limit ended it
  */

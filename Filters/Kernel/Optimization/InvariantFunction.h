@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file InvariantFunction.h
- * @brief A sum over simplices of a user's metric that depends on |T|^2 and det T alone, as a
- * function of one free vertex.
- * Internal: not installed.
+ * @brief A sum over simplices of a user metric that only depends on |T|^2 and det T, as a function
+ * of one free vertex. Internal: not installed.
  */
 #ifndef tautline_InvariantFunction_h
 #define tautline_InvariantFunction_h
@@ -16,15 +15,15 @@ namespace tautline
 /**
  * @class tautline::InvariantFunction
  * @brief Both invariants are known functions of the displacement (see Patch.h), so that the formula
- * is evaluated for two numbers instead of the cells.
+ * is evaluated for two numbers instead of whole cells.
  */
 template <int Dim>
 class InvariantFunction : public PatchFunction<Dim>
 {
 public:
   /**
-   * @param sum must outlive the function; of a template that adds up terms of single elements
-   * @param scale T of the metric is that of the simplices times this
+   * @param sum must outlive the function; with a template that sums terms of single elements
+   * @param scale T of the metric is T of the simplices times this
    */
   InvariantFunction(const ObjectiveSumState& sum, double scale)
     : Function(sum.function)
@@ -55,9 +54,9 @@ public:
   }
 
 private:
-  static constexpr int chunk = 32 / PacketWidth; ///< packets that are evaluated at once
+  static constexpr int chunk = 32 / PacketWidth; ///< number of packets evaluated at once
 
-  /// The term of an element and its derivatives by the metric.
+  /// The term of an element and its derivatives with respect to the metric.
   struct Term
   {
     Packet f, slope, curvature;
@@ -91,8 +90,8 @@ private:
     return t;
   }
 
-  /// What valueOver() and sumOver() take as energies: the packets of a patch one after another,
-  /// evaluated by chunks, since each call of the metric costs time.
+  /// The energy for valueOver() and sumOver(): the packets of a patch one after another, evaluated
+  /// in chunks because each call of the metric costs time.
   class Energy
   {
   public:
@@ -117,7 +116,7 @@ private:
       }
       return n;
     }
-    /// Evaluates the metric at the next packets. @param derivatives null: not wanted
+    /// Evaluates the metric at the next packets. @param derivatives null: not requested
     void evaluate(Packet* derivatives) const
     {
       const int n = this->load(this->Invariants[0], this->Invariants[1]);
@@ -125,7 +124,7 @@ private:
         PacketWidth * n, PacketWidth * chunk, reinterpret_cast<const double*>(this->Invariants),
         reinterpret_cast<double*>(this->Q), reinterpret_cast<double*>(derivatives));
     }
-    /// The term of the next packet, without the lanes that only fill it up.
+    /// The term of the next packet, without padding lanes.
     template <ObjectiveTemplate Template>
     Term term(Packet q, Packet det) const
     {

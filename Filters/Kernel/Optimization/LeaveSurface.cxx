@@ -11,15 +11,14 @@ namespace tautline
 namespace
 {
 constexpr int maxSurfaceRounds = 50;
-/// Elements count as the worst up to this factor from the worst value.
+/// Elements within this factor of the worst value belong to the worst.
 constexpr double amongWorst = 1.05;
-/// Points move within so many layers of elements about the worst ones.
+/// Points move within this many layers of elements around the worst ones.
 constexpr int layers = 2;
 /// A round that improves the worst value by less than this fraction of it is the last.
 constexpr double worthwhileRise = 5e-3;
 
-/// Flags of the valid elements whose values are near the worst one, of those with a point that can
-/// move.
+/// Flags the valid elements with a movable point whose values are near the worst one.
 std::vector<char> worstElements(const OptimizationProblem& problem, const Objective& judged,
   const std::vector<unsigned char>& movable, double& worst)
 {
@@ -57,7 +56,7 @@ std::vector<char> worstElements(const OptimizationProblem& problem, const Object
   return candidates;
 }
 
-/// Sets the flags of the points of elements with a flag, or of those that have a point with one.
+/// Flags the points of flagged elements, or of elements with a flagged point.
 void spread(const MeshView& view, std::vector<char>& elements, std::vector<unsigned char>& points)
 {
   for (Index cell = 0; cell < view.numberOfCells; ++cell)
@@ -110,7 +109,8 @@ LeavingResult leaveSurface(const Mesh& mesh, OptimizationProblem& problem,
   for (int round = 0; some && round < maxSurfaceRounds && !result.outOfTime && !result.stopped;
        ++round)
   {
-    // Points that have left stay loose, as they are on nothing they could slide on.
+    // Points that have left the surface stay loose, because there is nothing on which they could
+    // slide.
     std::vector<unsigned char> near(view.numberOfPoints, 0), held(view.numberOfPoints);
     spread(view, elements, near);
     for (Index p = 0; p < view.numberOfPoints; ++p)

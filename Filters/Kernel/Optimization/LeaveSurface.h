@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file LeaveSurface.h
- * @brief Improves the worst elements by points that leave the surface.
- * Internal: not installed.
+ * @brief Improves the worst elements by letting points leave the surface. Internal: not installed.
  */
 #ifndef tautline_LeaveSurface_h
 #define tautline_LeaveSurface_h
@@ -11,25 +10,25 @@
 
 namespace tautline
 {
-/// What leaveSurface() did.
+/// The result of leaveSurface().
 struct LeavingResult
 {
-  std::vector<Index> points;     ///< that may have left
-  std::vector<double> onSurface; ///< 3 each: where these were on the surface last
+  std::vector<Index> points;     ///< that may have left the surface
+  std::vector<double> onSurface; ///< 3 each: their last positions on the surface
   bool stopped = false;          ///< on request
   bool outOfTime = false;
 
-  /// How many of them are elsewhere.
+  /// The number of these points that have moved off the surface.
   Index count(const std::vector<double>& coordinates) const;
 };
 
 /**
- * @brief Where corners, curves and bends of the surface bound the worst elements, lets the points
- * near these leave it, within OptimizeOptions::surfaceTolerance: those of OptimizeOptions::leaving.
- * Goes on with the elements that are the worst then, until the worst value no longer improves.
- * Points that are far from the worst elements do not move. Each round prepares the mesh anew.
- * @param mesh where the points were at first, which has the surface
- * @param problem starts where it is, and ends at the points reached
+ * @brief If corners, curves and bends of the surface limit the worst elements, lets the nearby
+ * points of OptimizeOptions::leaving leave the surface within OptimizeOptions::surfaceTolerance.
+ * Continues with the next worst elements until the worst value no longer improves. Points far from
+ * the worst elements do not move. Each round prepares the mesh again.
+ * @param mesh the initial mesh, which defines the surface
+ * @param problem starts at its current points, and ends at the final points
  * @param limits of the whole run; the mean must be set
  * @param report called after each round that improved the mesh, with the problem at that time;
  * returns false to stop

@@ -13,7 +13,7 @@ namespace tautline
 {
 namespace
 {
-/// What ranks send of a vertex: x y z, and whether it has moved.
+/// The numbers sent per vertex: x y z, and whether it has moved.
 constexpr int Sent = 4;
 }
 
@@ -97,9 +97,9 @@ struct LocalSweeper::Base
 
 //------------------------------------------------------------------------------
 /**
- * @brief Sends to other ranks where the own vertices of a set are now, and puts those of the halo
- * there.
- * @param moved per group, how many vertices of it have moved
+ * @brief Sends the positions of the owned vertices of a set to other ranks, and updates the halo
+ * vertices.
+ * @param moved per group: the number of vertices that have moved
  * @param visitMoved called with each vertex of the halo that has moved
  */
 template <class Visit>
@@ -123,11 +123,12 @@ void LocalSweeper::Base::exchange(
       const std::int32_t v = this->Order.VertexOf[p];
       if (v < 0)
       {
-        continue; // a point of the piece without a cell here
+        continue; // a point of the piece without a local cell
       }
       const double* from = &this->Buffer[Sent * static_cast<std::size_t>(p)];
       double* at = x + VertexStride * static_cast<std::size_t>(v);
-      // Where a vertex stays, its owner has the point as it was, which is not stored and rounded.
+      // If a vertex does not move, its owner keeps the original point without storing a rounded
+      // one.
       if (!std::equal(from, from + 3, at))
       {
         std::copy_n(from, 3, at);
@@ -167,7 +168,7 @@ private:
 template <int Dim>
 void LocalSweeper::Implementation<Dim>::wake(std::int32_t v, std::vector<unsigned char>& next) const
 {
-  // Threads may write the same flag at once; they write the same.
+  // Threads may write the same flag concurrently, but they write the same value.
   __atomic_store_n(&next[v], static_cast<unsigned char>(1), __ATOMIC_RELAXED);
   const std::int32_t* ids = this->Simplices.patchVertices();
   const std::size_t end = static_cast<std::size_t>(Dim) * this->Simplices.patchStart(v + 1);
@@ -190,7 +191,8 @@ SweepResult LocalSweeper::Implementation<Dim>::sweep(
   const SweepOrder& order = this->Order;
   const Ranks& ranks = order.TheRanks;
   const std::size_t groups = order.Begins.size();
-  // Results are kept per group and added in order: they do not depend on the number of threads.
+  // Results are stored per group and added in order, so that they do not depend on the number of
+  // threads.
   std::vector<double> gradient2(groups, 0.0);
   std::vector<Index> visited(groups, 0), moved(groups, 0);
   std::vector<std::vector<double>> ofSet(n);
@@ -199,7 +201,7 @@ SweepResult LocalSweeper::Implementation<Dim>::sweep(
   ScratchPool<PatchWorker<Dim>> workers([&] { return this->Mover.makeWorker(); });
   const auto moveGroup = [&](PatchWorker<Dim>& w, std::size_t i, std::size_t place)
   {
-    // A group uses the changes of earlier sets, and its own.
+    // A group uses the changes of earlier sets and its own changes.
     w.change = total;
     const std::int32_t begin = order.Begins[i];
     const std::int32_t end = std::min(this->Simplices.freeVertices(), begin + order.Size);
@@ -246,7 +248,7 @@ SweepResult LocalSweeper::Implementation<Dim>::sweep(
   {
     values[i] = this->Mover.objective(i, total[i]);
   }
-  // The next sweep visits the vertices that moved and their neighbours.
+  // The next sweep visits the vertices that moved and their neighbors.
   if (this->Options.culling > 0)
   {
     this->Active.swap(next);

@@ -14,19 +14,21 @@ namespace
 using Vector = std::vector<double>;
 
 // Line search.
-constexpr double curvatureQuasiNewton = 0.9; // of the slope that may remain
+constexpr double curvatureQuasiNewton = 0.9; // fraction of the slope that may remain
 constexpr double curvatureConjugate = 0.2;
-constexpr double curvatureNewton = 0.3; // beyond it a longer step is tried: it costs little beside
+constexpr double curvatureNewton = 0.3; // above it, a longer step is tried: cheap compared with
                                         // the direction
 constexpr double shortening = 0.5, lengthening = 4; // of Newton's first trial step
 constexpr int maxTrials = 40;
 constexpr double longestExtension = 100; // of the first trial step
 constexpr double extendAtLeast = 1.5, extendAtMost = 5.0;
-constexpr double bracketMargin = 0.1; // of a bracket, at its ends, that interpolation keeps off
+constexpr double bracketMargin = 0.1; // fraction of a bracket at its ends that interpolation avoids
 constexpr double bracketEnd = 1e-12;
-constexpr double firstDecrease = 0.1; // of the value, that the first step of all aims at
+// relative decrease of the value targeted by the very first step
+constexpr double firstDecrease = 0.1;
 
-// Iterations in a row that change the value by rounding only, before there is no progress.
+// The number of consecutive iterations that only change the value by rounding before stopping
+// without progress.
 constexpr int maxStalled = 3;
 constexpr double roundingOfLineSearch = 1e-15;
 constexpr int gainWindow = 20; // iterations, see MinimizeOptions::leastGain
@@ -37,17 +39,19 @@ constexpr double restartOverlap = 0.2; // of successive gradients (Powell)
 // Early steps change the Hessian most: linearize() at iterations 0, 1, 3, 9, ...
 constexpr int refreshGrowth = 2;
 constexpr int maxInnerIterations = 5000;
-// Nash and Sofer's test: the share of the model's decrease that one more inner iteration would add.
+// The test of Nash and Sofer: the fraction of the model decrease that one more inner iteration
+// would add.
 constexpr double innerShare = 0.3;
-// Where the Hessian does not curve upwards, it is shifted by this times what would make it flat,
-// and less in the next iteration.
+// If the Hessian has nonpositive curvature, it is shifted by this times the shift that would make
+// it flat, and less in the next iteration.
 constexpr double shiftGrowth = 4, shiftDecay = 0.3;
 constexpr double smallestShift = 0.01;
 constexpr int maxShifts = 8;            // in an iteration
-constexpr double innerResidual = 1e-12; // of the preconditioned residual's square, relative
+constexpr double innerResidual = 1e-12; // relative, for the squared preconditioned residual
 constexpr double differenceStep = 1e-7;
 
-/// What conjugate gradients, L-BFGS and Newton share: the point, its gradient, the line search.
+/// The common part of conjugate gradients, L-BFGS and Newton: the point, its gradient, and the line
+/// search.
 class Minimizer
 {
 public:
@@ -107,9 +111,10 @@ private:
   double First = 1;               ///< first trial step along D
   double FirstNewton = 1;         ///< first trial step along Newton's direction
   double Shift = 0;               ///< of Newton's system, in units of the preconditioner
-  double Promised = HUGE_VAL;     ///< by a quadratic model, of the step; 0: not known
+  /// decrease of the step predicted by a quadratic model; 0: unknown
+  double Promised = HUGE_VAL;
   double FirstF = 0;
-  Vector Values; ///< after each of Newton's iterations
+  Vector Values; ///< values after each Newton iteration
   bool Preconditioned = false;
   bool Fresh = true; ///< D does not use the history
   MinimizeResult Result;
@@ -156,8 +161,9 @@ double interpolate(double lo, double flo, double slo, double hi, double fhi, dou
 
 //------------------------------------------------------------------------------
 /**
- * @brief Goes along D to a point of the Wolfe conditions. The bracket [lo, hi] always holds one: at
- * lo the value is low enough and falls too steeply, at hi it is too high or rises too steeply.
+ * @brief Searches along D for a point that satisfies the Wolfe conditions. The bracket [lo, hi]
+ * always contains one: at lo, the value is low enough but decreases too steeply; at hi, it is too
+ * high or increases too steeply.
  */
 bool Minimizer::search(double first, double curvature, bool strong)
 {
@@ -226,10 +232,10 @@ bool Minimizer::search(double first, double curvature, bool strong)
 }
 
 /**
- * @brief Goes along Newton's direction: at first by the whole step, or a shorter one where the last
- * had to be short; by less until the value is low enough; or further, while much of the slope
- * remains and the value falls. From meshes of flat elements the whole step multiplies their height
- * by a constant only.
+ * @brief Searches along Newton's direction: first with the full step, or a shorter one if the last
+ * had to be short; then shorter until the value is low enough, or longer while much of the slope
+ * remains and the value decreases. For meshes of flat elements, the full step only multiplies their
+ * height by a constant.
  */
 bool Minimizer::searchNewton()
 {
@@ -261,7 +267,7 @@ bool Minimizer::searchNewton()
   const bool shortened = trials > 1;
   while (!shortened && now.slope < curvatureNewton * whole && trials < maxTrials && t < limit)
   {
-    // From where the step has led, to where the slope would vanish if it went on changing so.
+    // Secant step to where the slope would vanish if it changed linearly.
     const double secant = now.slope / (whole - now.slope) * t;
     Trial next;
     next.t =
@@ -280,7 +286,7 @@ bool Minimizer::searchNewton()
   return true;
 }
 
-/// The first step of all: to a somewhat smaller value, or one of length 1 if the value gives no
+/// The very first step: aims at a somewhat smaller value, or has length 1 if the value has no
 /// scale.
 double Minimizer::firstStep() const
 {
@@ -318,7 +324,7 @@ void Minimizer::quasiNewton()
   this->Slope = this->Memory.direction(this->G, this->D,
     [this](Vector& q)
     {
-      // The preconditioner, or the identity, scaled to fit the newest pair.
+      // Use the preconditioner, or the identity, scaled to match the newest pair.
       const LimitedMemory::Pair& newest = this->Memory.newest();
       double gamma = newest.sy / newest.yy;
       if (this->precondition(newest.y, this->Z))
@@ -355,7 +361,7 @@ void Minimizer::conjugate()
       this->D[i] = beta * this->D[i] - this->Z[i];
       return this->D[i] * this->G[i];
     });
-  // As far as the last step would have gone by its slope.
+  // Scale the first trial step by the ratio of slopes.
   this->First = this->Step * this->StepSlope / this->Slope;
   this->Promised = this->Preconditioned ? 0.5 * now : 0.0;
   this->Fresh = beta == 0;
@@ -368,7 +374,7 @@ void Minimizer::hessianTimes(const Vector& d, Vector& product)
   {
     return;
   }
-  // Differences of gradients, on the allowed side.
+  // Use differences of gradients on the allowed side.
   const double xx = this->Algebra.dot(this->X, this->X);
   const double step = differenceStep * std::max(1.0, std::sqrt(xx)) / std::sqrt(this->dot(d, d));
   const double t = 0.5 * this->Function.largestStep(this->X, d.data(), 2 * step);
@@ -381,9 +387,9 @@ void Minimizer::hessianTimes(const Vector& d, Vector& product)
 
 /**
  * @brief Conjugate gradients on (H + shift M) p = -g with the preconditioner M, until the model
- * hardly decreases any more. D is the step.
- * @return 0, or the shift that the first direction that does not curve upwards asks for; D is then
- * not changed
+ * hardly decreases anymore. D is the step.
+ * @return 0, or the shift required by the first direction of nonpositive curvature; D is then
+ * unchanged
  */
 double Minimizer::solveNewton(double shift)
 {
@@ -434,7 +440,7 @@ double Minimizer::solveNewton(double shift)
     complete = next >= 0 && next <= innerResidual * first;
     if (!(next > 0))
     {
-      break; // what is left is rounding, or a preconditioner that does not suit
+      break; // only rounding remains, or the preconditioner is unsuitable
     }
     if (this->Options.outOfTime && this->Options.outOfTime())
     {
@@ -456,7 +462,7 @@ double Minimizer::solveNewton(double shift)
   return 0;
 }
 
-/// The direction of Newton's method; where the Hessian does not curve upwards, with a shift.
+/// The direction of Newton's method, with a shift if the Hessian has nonpositive curvature.
 void Minimizer::newton()
 {
   for (int attempt = 0; attempt < maxShifts; ++attempt)
@@ -501,8 +507,8 @@ bool Minimizer::iterate()
     return false;
   }
   const double length = std::sqrt(this->dot(this->D, this->D));
-  // Newton's direction is at a right angle to the gradient, but for rounding, where some elements
-  // are far flatter than others.
+  // Newton's direction is perpendicular to the gradient, up to rounding, if some elements are far
+  // flatter than others.
   const bool descent =
     method == Optimizer::NewtonConjugateGradient || this->Slope < -minDescent * length * this->Norm;
   bool moved = (descent || this->Fresh) && this->Slope < 0 && std::isfinite(length) &&
@@ -516,7 +522,7 @@ bool Minimizer::iterate()
   }
   if (method == Optimizer::NewtonConjugateGradient && this->Fresh)
   {
-    this->Promised = HUGE_VAL; // not by Newton's model
+    this->Promised = HUGE_VAL; // not predicted by Newton's model
   }
   if (moved && method == Optimizer::LimitedMemoryBFGS)
   {
@@ -526,8 +532,8 @@ bool Minimizer::iterate()
 }
 
 //------------------------------------------------------------------------------
-/// Whether little is left to gain, by the last direction and by a preconditioner made here; see
-/// MinimizeOptions::decrement. If not, directions begin anew.
+/// Whether the predicted gain is small, according to the last direction and a preconditioner
+/// computed here; see MinimizeOptions::decrement. If not, the directions are restarted.
 bool Minimizer::isNear()
 {
   const double little = std::max(

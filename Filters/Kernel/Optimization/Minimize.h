@@ -22,20 +22,20 @@
 
 namespace tautline
 {
-/// A function to be minimized, on the side of the barrier where the start is.
+/// A function to minimize, on the side of the barrier that contains the start.
 class SmoothFunction
 {
 public:
   virtual ~SmoothFunction() = default;
   virtual std::size_t size() const = 0;
   /**
-   * @brief The value and the gradient at x; +infinity where x is not allowed (an element would
-   * invert), and the gradient is then ignored. Minimization gets values from this function only.
+   * @brief The value and the gradient at x; +infinity if x is not allowed (an element would
+   * invert); the gradient is then ignored. The minimizer obtains values only from this function.
    */
   virtual double valueAndGradient(const double* x, double* gradient) = 0;
   /**
    * @brief The largest step t in (0, wanted] for which x + t d is certainly allowed, or `wanted` if
-   * not known: the value then limits the step. No longer step is tried. Called once per iteration.
+   * unknown: the value then limits the step. Longer steps are not tried. Called once per iteration.
    */
   virtual double largestStep(const double* /*x*/, const double* /*d*/, double wanted)
   {
@@ -45,10 +45,10 @@ public:
   /// there is none.
   virtual bool precondition(const double* /*r*/, double* /*z*/) { return false; }
   /**
-   * @brief Makes ready for hessianTimes() and precondition() at x, where the last gradient was
-   * taken. Called before every direction of NewtonConjugateGradient; for the others at iterations
-   * 0, 1, 3, 9 and so on, at the latest MinimizeOptions::refresh iterations after the last time.
-   * L-BFGS then discards its pairs, if there is a preconditioner.
+   * @brief Prepares hessianTimes() and precondition() at x, where the last gradient was computed.
+   * Called before every direction of NewtonConjugateGradient; for the other methods, called at
+   * iterations 0, 1, 3, 9 and so on, at most MinimizeOptions::refresh iterations apart. L-BFGS then
+   * discards its pairs, if there is a preconditioner.
    */
   virtual void linearize(const double* /*x*/) {}
   /// The product of the Hessian, which may be indefinite, with d; false if there is none.
@@ -62,27 +62,28 @@ struct MinimizeOptions
   double gradientNorm = 1e-6;  ///< relative to the first; 0: never
   double relativeChange = 0.0; ///< of the value in an iteration; 0: never
   /**
-   * @brief Half of the squared Newton decrement, g H^-1 g / 2, estimates how far the value is above
-   * its minimum, wherever the iteration started (S. Boyd and L. Vandenberghe, "Convex
-   * Optimization", 2004, section 9.5.1). NewtonConjugateGradient stops after a step of which its
-   * model promised less than this, relative to the value. The others have estimates of H^-1 only:
-   * where these promise more, gradientNorm and relativeChange do not end them, unless it is the
-   * rounding of the first value. 0: not used.
+   * @brief Half of the squared Newton decrement, g H^-1 g / 2, estimates the distance of the value
+   * from its minimum, independently of the start (S. Boyd and L. Vandenberghe, "Convex
+   * Optimization", 2004, section 9.5.1). NewtonConjugateGradient stops after a step whose model
+   * predicted less than this, relative to the value. The other methods only have estimates of H^-1:
+   * if these predict more, gradientNorm and relativeChange do not stop them, unless the prediction
+   * is within the rounding of the first value. 0: not used.
    */
   double decrement = 0.0;
   /**
-   * @brief NewtonConjugateGradient: stop (NoProgress) where 20 iterations have reduced the value by
-   * less than this, relative to it, though more than that is promised; 0: never.
+   * @brief NewtonConjugateGradient: stop (NoProgress) if 20 iterations have reduced the value by
+   * less than this fraction although more is predicted; 0: never.
    */
   double leastGain = 0.0;
-  /// Asked between the inner iterations of Newton's method: true ends them at what they have.
+  /// Polled between the inner iterations of Newton's method: true ends them with the current
+  /// result.
   std::function<bool()> outOfTime;
-  int refresh = 20; ///< most iterations between calls of linearize(); at least 1
+  int refresh = 20; ///< maximum number of iterations between calls of linearize(); at least 1
   int threads = 0;  ///< 0: all cores. The result does not depend on it.
   /**
    * @brief Null, or ranks that each have some of the variables and call minimize() together. The
-   * function's methods are then collective, it gives the same value on all ranks, and so do
-   * outOfTime and the observer. The sums are rounded once, whatever the ranks.
+   * methods of the function are then collective and must return the same value on all ranks, as
+   * must outOfTime and the observer. The sums are rounded once, independently of the ranks.
    */
   RankGroup* group = nullptr;
   /// After each iteration: iteration, value, gradient norm, x. Returns false to stop.
@@ -99,9 +100,9 @@ struct MinimizeResult
 };
 
 /**
- * @brief Minimizes from x, which is overwritten by the best found; it is never worse than the
- * start. From a start that is not allowed nothing is done (NoProgress, value +infinity); without
- * variables, NoFreeVertices.
+ * @brief Minimizes from x, which is overwritten by the best point found; it is never worse than the
+ * start. If the start is not allowed, nothing is done (NoProgress, value +infinity); without
+ * variables: NoFreeVertices.
  */
 TAUTLINE_KERNEL_EXPORT MinimizeResult minimize(
   SmoothFunction& function, double* x, const MinimizeOptions& options);

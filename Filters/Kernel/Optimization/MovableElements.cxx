@@ -15,7 +15,8 @@ namespace tautline
 {
 namespace
 {
-/// Below this fraction of the share of the worst element in a p-mean, an element has no say in it.
+/// An element below this fraction of the share of the worst element in a p-mean has no effect on
+/// it.
 constexpr double smallestShare = 1e-5;
 
 /// The free vertex of each point, or -1.
@@ -107,7 +108,7 @@ std::vector<unsigned char> OptimizationProblem::verticesNear(
       [&](Index, Index cell, const Index* points, int nodes)
       {
         const double value = measured.values[cell];
-        // A value that is no number counts as near.
+        // A NaN value is treated as near.
         if (larger ? value * fraction > worst : std::abs(value) < fraction * std::abs(worst))
         {
           return;
@@ -116,7 +117,7 @@ std::vector<unsigned char> OptimizationProblem::verticesNear(
         {
           if (const std::int32_t v = vertex[points[k]]; v >= 0)
           {
-            // Threads may write the same flag at once; they write the same.
+            // Threads may write the same flag concurrently, but they write the same value.
             __atomic_store_n(&flags[v], static_cast<unsigned char>(1), __ATOMIC_RELAXED);
           }
         }

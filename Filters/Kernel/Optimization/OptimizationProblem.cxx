@@ -12,13 +12,13 @@ namespace tautline
 {
 namespace
 {
-/// Whether the terms of a template are functions of single elements.
+/// Whether a template is a sum of functions of single elements.
 bool addsUp(ObjectiveTemplate form)
 {
   return form != ObjectiveTemplate::PowerMean && form != ObjectiveTemplate::Maximum;
 }
 
-/// Whether a metric is one of a user's that depends on |T|^2 and det T alone.
+/// Whether a metric is a user metric that only depends on |T|^2 and det T.
 bool isOfInvariants(const MetricInfo& info, CellType type)
 {
   if (!info.user || info.user->argument() != MetricArgument::Jacobian)
@@ -72,12 +72,13 @@ OptimizationProblem::OptimizationProblem(const Mesh& mesh, const OptimizeOptions
 {
   const MeshView& view = mesh.view();
   this->Moving = std::make_unique<Mesh>(mesh.at(points.data()));
-  // Planar or not as the input is, though the points may have moved: it decides which methods do.
+  // Keep the space of the input although the points may have moved: it decides which methods are
+  // applicable.
   this->Moving->setSpace(mesh.space());
   this->Resolved = options.objectives;
 
-  // One set of targets can be built into the simplices; objectives with others take the general
-  // way.
+  // One set of targets can be built into the simplices; objectives with other targets use the
+  // general path.
   const Targets* targets = nullptr;
   for (Objective& objective : this->Resolved)
   {
@@ -102,7 +103,7 @@ OptimizationProblem::OptimizationProblem(const Mesh& mesh, const OptimizeOptions
   for (const Objective& objective : this->Resolved)
   {
     this->Terms.push_back(this->fastTerm(objective));
-    // Simplices carry the objective's targets, or the ideal ones.
+    // Simplices have the targets of the objective, or the ideal ones.
     const LocalTerm& term = this->Terms.back();
     this->AllFast = this->AllFast && (term.shapePower > 0 || term.sizeSquared > 0);
     if (objective.evaluation.targets != targets && (term.shapePower > 0 || term.invariantScale > 0))
@@ -119,7 +120,7 @@ OptimizationProblem::OptimizationProblem(const Mesh& mesh, const OptimizeOptions
   }
   if (ranks.any(some))
   {
-    // Inverted elements that no objective can repair, and those with NaN, are left out.
+    // Inverted elements that no objective can repair, and elements with NaN, are left out.
     this->AtStart = {};
     std::vector<signed char> validity(view.numberOfCells);
     this->Moving->classifyCells(validity.data(), options.threads);
@@ -136,7 +137,7 @@ OptimizationProblem::OptimizationProblem(const Mesh& mesh, const OptimizeOptions
 }
 
 //------------------------------------------------------------------------------
-/// On several ranks: an objective is in closed form on all or on none.
+/// On several ranks: an objective is in closed form either on all ranks or on none.
 void OptimizationProblem::agreeOnForms()
 {
   // A rank without cells follows the others.
@@ -156,7 +157,7 @@ void OptimizationProblem::agreeOnForms()
   }
   for (std::size_t i = 0; i < this->Resolved.size(); ++i)
   {
-    this->sum(i); // which takes all ranks
+    this->sum(i); // a collective call
   }
 }
 
@@ -238,8 +239,8 @@ Validity cornerValidity(const Mesh& mesh, Index cell)
 void OptimizationProblem::leaveOut(std::vector<signed char> validity)
 {
   const Index cells = static_cast<Index>(validity.size());
-  // Objectives are functions of the corners: elements that are folded in between take part, and are
-  // often unfolded by it.
+  // Objectives are functions of the corners: elements that are folded only between them are
+  // included, which often unfolds them.
   for (Index cell = 0; cell < cells; ++cell)
   {
     if (isInvalid(validity[cell]))
@@ -272,8 +273,8 @@ void OptimizationProblem::leaveOut(std::vector<signed char> validity)
     }
     if (!this->TheRanks.any(elements > 0))
     {
-      throw Error("No element is valid, and no objective repairs them: untangle the mesh first; if "
-                  "that leaves all invalid, let more points move.");
+      throw Error("No element is valid, and no objective repairs them: untangle the mesh "
+                  "first; if all remain invalid, allow more points to move.");
     }
     if (count == 0)
     {
@@ -303,8 +304,8 @@ bool OptimizationProblem::someRepaired()
 }
 
 //------------------------------------------------------------------------------
-/// The largest absolute element value of each objective where the points are, if untangling
-/// objectives are to be rescaled, else empty.
+/// The largest absolute element value of each objective at the current points if untangling
+/// objectives must be rescaled; otherwise empty.
 std::vector<double> OptimizationProblem::largestValues() const
 {
   const bool untangles = std::any_of(this->Resolved.begin(), this->Resolved.end(),
@@ -331,7 +332,7 @@ std::vector<double> OptimizationProblem::largestValues() const
 /// See OptimizeOptions::rescaleUntangling.
 void OptimizationProblem::rescaleUntangling(const std::vector<double>& largest)
 {
-  // The largest element values of the other objectives are what the untangling ones have to exceed.
+  // The untangling objectives must exceed the largest element values of the other objectives.
   const auto untangles = [this](std::size_t i)
   { return this->Resolved[i].metric == Metric::UntangleBeta; };
   double others = 0;
@@ -348,7 +349,7 @@ void OptimizationProblem::rescaleUntangling(const std::vector<double>& largest)
     {
       continue;
     }
-    // A little more than equal. The weights multiply q^2 or q, whichever the template sums.
+    // Slightly more than equal. The weights multiply q^2 or q, depending on the template.
     constexpr double margin = 1.1;
     const double factor = margin * others / own;
     const double weight =
@@ -438,7 +439,7 @@ LocalOptions OptimizationProblem::localOptions() const
   }
   if (this->Options.limits)
   {
-    // From the input, even where untangling has moved the points since.
+    // Relative to the input, even if untangling has moved the points since.
     local.start.resize(VertexStride * static_cast<std::size_t>(s.freeVertices()));
     for (std::int32_t v = 0; v < s.freeVertices(); ++v)
     {
@@ -517,7 +518,7 @@ void OptimizationProblem::summarizeCells(IterationRecord& record)
     const MetricInfo& info = metricInfo(objective.metric);
     const bool larger = info.direction == Direction::LargerIsBetter;
     std::vector<double> values;
-    double worst = -std::numeric_limits<double>::infinity(); // larger the worse
+    double worst = -std::numeric_limits<double>::infinity(); // larger is worse
     for (const CellBlock& block : this->Moving->blocks())
     {
       for (Index c = 0; isElement(*this->Moving, block.type) && c < block.count; ++c)

@@ -14,8 +14,8 @@ namespace tautline
 {
 namespace
 {
-/// What work() returns. @throws MemoryError if it does not fit, so that the sweeps go on, unless
-/// the user has chosen a global optimizer
+/// Returns the result of work(). @throws MemoryError if it does not fit, so that the sweeps
+/// continue, unless the user has chosen a global optimizer
 template <class Work>
 std::invoke_result_t<Work> inMemory(const OptimizeOptions& options, const Work& work)
 {
@@ -39,8 +39,8 @@ std::vector<double> coordinatesOf(SimplexMesh& simplices)
   return { x, x + VertexStride * static_cast<std::size_t>(simplices.freeVertices()) };
 }
 
-/// By how much a sweep has lowered the objective of the mesh. On patches steps may raise it: by how
-/// much it has changed.
+/// The decrease of the mesh objective by a sweep. On patches, steps may increase it: then the
+/// absolute change.
 double loweredBy(
   const Scalarizer& scalarizer, const IterationRecord& before, const IterationRecord& now)
 {
@@ -48,7 +48,7 @@ double loweredBy(
   return now.objectives.size() > 1 && scalarizer.onPatches() ? std::abs(lowered) : lowered;
 }
 
-/// Goes back to the coordinates before a sweep.
+/// Restores the coordinates before a sweep.
 void takeBack(OptimizationProblem& problem, const std::vector<double>& coordinates)
 {
   std::copy(coordinates.begin(), coordinates.end(), problem.simplices().coordinates());
@@ -56,7 +56,7 @@ void takeBack(OptimizationProblem& problem, const std::vector<double>& coordinat
   problem.store();
 }
 
-/// Lets further sweeps make one step at each vertex; whether they made several.
+/// Limits further sweeps to one step per vertex; returns whether they made several.
 bool makeSingleSteps(LocalSweeper& sweeper, int& patchIterations)
 {
   const bool several = patchIterations > 1;
@@ -74,7 +74,7 @@ bool OptimizationSteps::report(OptimizationProblem& problem, const IterationReco
   const auto& observer = problem.options().observer;
   const auto points = [&](double* p)
   {
-    if (!problem.ranks().several()) // where they are stored, which takes all ranks
+    if (!problem.ranks().several()) // storing them is collective
     {
       problem.store();
     }
@@ -96,8 +96,8 @@ StopReason OptimizationSteps::sweep(Slowness* slow, bool& failed, bool& repaired
   LocalSweeper sweeper(simplices, problem.moving(), problem.points().data(), problem.localTerms(),
     problem.localOptions(), &problem.order());
   std::vector<double> best = coordinatesOf(simplices);
-  // One objective in closed form needs neither the mesh's own points on the way nor a way back:
-  // each step reduces it. Records of several ranks are of stored points.
+  // One objective in closed form needs neither the mesh points during sweeps nor a backup: each
+  // step reduces it. Records of several ranks use stored points.
   const bool costly = problem.ranks().any(!problem.isSimple());
   const bool simple = !costly && !problem.ranks().several();
   StopReason reason = StopReason::NoProgress;
@@ -125,8 +125,8 @@ StopReason OptimizationSteps::sweep(Slowness* slow, bool& failed, bool& repaired
     const double size = std::abs(now.objective);
     if (!simple && !(std::isfinite(size) && lowered >= -roundingOfSums * size))
     {
-      // Blocks of one colour do not use each other's changes of a composite objective, which may
-      // rise or leave its domain, as a product with a factor below 0: most with several steps.
+      // Blocks of one color ignore each other's changes of a composite objective, which may then
+      // increase or leave its domain (a product with a negative factor), mostly with several steps.
       takeBack(problem, best);
       if (makeSingleSteps(sweeper, patchIterations))
       {
@@ -153,7 +153,7 @@ StopReason OptimizationSteps::sweep(Slowness* slow, bool& failed, bool& repaired
     }
 
     gains.add(lowered);
-    // On a surface each sweep moves the points a little off the input: no more of them than needed.
+    // Each sweep moves points of a surface slightly off the input: avoid unnecessary sweeps.
     const double remaining = problem.surface() ? lowered : gains.remaining();
     if (slow && (gains.stiff(size) || gains.slow(size, stop.relativeChange)))
     {
@@ -161,7 +161,7 @@ StopReason OptimizationSteps::sweep(Slowness* slow, bool& failed, bool& repaired
       return StopReason::NoProgress;
     }
 
-    // Convergence is only believed of a sweep over all vertices.
+    // Convergence is only accepted after a sweep over all vertices.
     if (!converged(
           stop, sweep, all, firstGradient, lowered, remaining, gains.remaining(), size, reason))
     {
@@ -195,7 +195,7 @@ StopReason OptimizationSteps::minimizeAll(Optimizer method)
 {
   StopReason reason = StopReason::NoProgress;
   const auto minimize = [&] { reason = this->minimizeTogether(method); };
-  // The caller goes on where memory lacks, on all ranks alike.
+  // If memory is insufficient, the caller continues, on all ranks alike.
   this->Problem.ranks().together(
     [&]
     {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file OptimizationSteps.h
- * @brief What moves the points of an optimization, and its history.
- * Internal: not installed.
+ * @brief The methods that move the points of an optimization, and its history. Internal: not
+ * installed.
  */
 #ifndef tautline_OptimizationSteps_h
 #define tautline_OptimizationSteps_h
@@ -12,14 +12,14 @@
 
 namespace tautline
 {
-/// Elements with corners beside simplices: from so many on, for each of these, sweeps take several
-/// times as long as Newton's method.
+/// The ratio of elements with several corners to simplices above which sweeps take several times as
+/// long as Newton's method.
 constexpr double manyCorners = 0.01;
 
 /**
  * @class tautline::OptimizationSteps
- * @brief The methods by which the points of a problem move, each to convergence. On several ranks
- * all methods are collective and return the same everywhere.
+ * @brief The methods that move the points of a problem, each to convergence. On several ranks, all
+ * methods are collective and return the same result everywhere.
  */
 class OptimizationSteps
 {
@@ -35,37 +35,37 @@ public:
   OptimizationProblem& problem() { return this->Problem; }
   /// Adds a record to the history and calls the observer; false if that stops the run, on any rank.
   bool report(const IterationRecord& record) { return this->report(this->Problem, record); }
-  /// The same of points that another problem has.
+  /// The same for the points of another problem.
   bool report(OptimizationProblem& problem, const IterationRecord& record);
   /// The number of the next record.
   int next() const { return this->History.back().iteration + 1; }
 
   /**
    * @brief Sweeps to convergence.
-   * @param slow set, if not null, where they converge too slowly
-   * @param failed set where a sweep raised the objective, as those of several objectives can
-   * @param repaired set where an element that was left out has become valid
+   * @param slow set, if not null, if they converge too slowly
+   * @param failed set if a sweep increased the objective, which can happen with several objectives
+   * @param repaired set if an excluded element has become valid
    */
   StopReason sweep(Slowness* slow, bool& failed, bool& repaired);
   /// Moves all points at once, to convergence. Throws MemoryError if the matrix of Newton's method
   /// does not fit and the optimizer is Automatic.
   StopReason minimizeAll(Optimizer method);
-  /// The harmonicPoints() of these; empty if there are none. Throws MemoryError if the matrix does
-  /// not fit.
+  /// The harmonicPoints() for the given points; empty if there are none. Throws MemoryError if the
+  /// matrix does not fit.
   std::vector<double> harmonic(const std::vector<double>& points);
 
-  /// Whether more than manyCorners of the elements have several corners that together make one
+  /// Whether more than manyCorners of the elements have several corners that are combined into one
   /// value: quadrilaterals, hexahedra, wedges and pyramids. Sweeps have no closed form there.
   bool hasManyCorners() const;
-  /// See HessianMatrix::hasConvexPart(), of the first objective.
+  /// See HessianMatrix::hasConvexPart(), for the first objective.
   bool hasConvexPart() const;
   /// Whether points slide on lines or planes or have limits, an objective has targets, or the mesh
   /// is a surface in space.
   bool hasConstraintsOrTargets() const;
-  /// Whether points slide on the boundary of a planar or volume mesh, which only sweeps keep where
-  /// it is curved.
+  /// Whether points slide on the boundary of a planar or volume mesh, which only sweeps preserve
+  /// where it is curved.
   bool slidesOnSurface() const;
-  /// Whether methods that move all points at once hold some of these.
+  /// Whether global methods hold some points fixed.
   bool holdsPoints();
 
 private:

@@ -22,8 +22,8 @@ namespace tautline
 {
 namespace
 {
-/// Goes back to points if a step from them on has made the objective larger than at first, or an
-/// element worse than the worst one.
+/// Restores points if a later step has made the objective larger than at the start, or an element
+/// worse than the worst one.
 bool goesBack(OptimizationSteps& steps, const IterationRecord& first, const QualityGuard& guard,
   const std::vector<double>& points)
 {
@@ -40,7 +40,7 @@ bool goesBack(OptimizationSteps& steps, const IterationRecord& first, const Qual
 }
 
 /// Lets points leave the surface, see leaveSurface(), unless the result is worse than the input,
-/// which is better already where they are.
+/// which is then restored.
 void leaveNearWorst(const Mesh& mesh, OptimizationSteps& steps, const IterationRecord& first,
   const QualityGuard& guard, const WorstLimits& limits, const Stopwatch& clock, bool worstFirst,
   LeavingResult& left)
@@ -64,7 +64,7 @@ void leaveNearWorst(const Mesh& mesh, OptimizationSteps& steps, const IterationR
   }
 }
 
-/// The fraction of the way to the ideal that the worst element goes from one value to another.
+/// The change of the worst element between two values, as a fraction of the distance to the ideal.
 double wayToIdeal(OptimizationProblem& problem, const Objective& judged, double from, double to)
 {
   const int dimension = problem.moving().dimension() == Dimension::Planar ? 2 : 3;
@@ -73,14 +73,14 @@ double wayToIdeal(OptimizationProblem& problem, const Objective& judged, double 
 }
 
 /**
- * @brief Raises the worst element by moving all points together from where the optimization began,
- * then lowers the objective by sweeps that hold what was reached. From where sweeps alone end there
- * is no way back: they make stretched cells skewed.
+ * @brief Improves the worst element by moving all points together from the start of the
+ * optimization, then reduces the objective with sweeps that preserve this improvement. This cannot
+ * start from the result of sweeps alone, because they skew stretched cells.
  * @param start points at which all elements are valid
- * @param limits have the allowance of the mean; if the points are raised, its rest counts from
- * where they are
- * @return whether the points are these now; if not, they are where they were before, which is
- * better or as good for less
+ * @param limits contain the allowance of the mean; if the result is used, the rest of the allowance
+ * is relative to it
+ * @return whether the result is used; otherwise the previous points are kept, which are better, or
+ * equally good at lower cost
  */
 bool raiseWorst(const Mesh& mesh, OptimizationSteps& steps, const IterationRecord& first,
   const QualityGuard& guard, const std::vector<double>& start, WorstLimits& limits,
@@ -101,8 +101,9 @@ bool raiseWorst(const Mesh& mesh, OptimizationSteps& steps, const IterationRecor
   const std::vector<double> raised = problem.points();
   const double after = worst();
   const auto way = [&](double from) { return wayToIdeal(problem, guard.judged(), from, after); };
-  // What is about as good as the sweeps improves further one by one, where the mean costs less.
-  constexpr double littleWay = 0.02, littleGain = 0.02; // the gain: of all sweeps
+  // If the result is about as good as the sweeps' result, moving single points improves it further
+  // at lower cost to the mean.
+  constexpr double littleWay = 0.02, littleGain = 0.02; // gain relative to all sweeps
   bool better = way(before) > littleWay;
   if (better)
   {
@@ -139,7 +140,7 @@ bool raiseWorst(const Mesh& mesh, OptimizationSteps& steps, const IterationRecor
   return better;
 }
 
-/// Improves the worst element as far as wanted, and at least to that of the input. Stores the
+/// Improves the worst element as requested, and at least to the worst of the input. Stores the
 /// points and measures the elements there.
 QualityGuard::State settleWorst(const Mesh& mesh, OptimizationSteps& steps,
   const IterationRecord& first, const QualityGuard& guard, const std::vector<double>& start,
@@ -169,7 +170,7 @@ QualityGuard::State settleWorst(const Mesh& mesh, OptimizationSteps& steps,
     WorstLimits limits{ allowance, !wanted };
     if (wanted)
     {
-      limits.mean = problem.record(0).mean[0]; // of several methods one after the other
+      limits.mean = problem.record(0).mean[0]; // shared by several successive methods
     }
     bool stopped = false;
     const auto report = [&](IterationRecord record)
@@ -178,8 +179,8 @@ QualityGuard::State settleWorst(const Mesh& mesh, OptimizationSteps& steps,
       stopped = !steps.report(record);
       return !stopped;
     };
-    // Where the points of cells with several corners are at an end one by one, all of them together
-    // may go on; those on a model then leave it somewhat.
+    // If moving points of cells with several corners one by one stalls, moving all of them together
+    // may continue; points on a model then leave it slightly.
     const bool mayLeave = !options.model || options.leaving || options.onGeometry;
     const bool together = wanted && mayLeave && steps.hasManyCorners() && first.inverted == 0 &&
       canSlideWorst(problem, guard.judged());
@@ -221,10 +222,10 @@ QualityGuard::State settleWorst(const Mesh& mesh, OptimizationSteps& steps,
 }
 
 /**
- * @brief Goes back to the input if the result, computed anew from its points, has an invalid
- * element, a worse worst element or a larger objective, or if points that were put back have taken
- * the surface farther than the tolerance.
- * @param state of the elements at the stored points, which become those of the result
+ * @brief Restores the input if the result, evaluated again at its points, has an invalid element, a
+ * worse worst element or a larger objective, or if restored points have moved the surface beyond
+ * the tolerance.
+ * @param state of the elements at the stored points, which become the points of the result
  */
 void verify(const Mesh& mesh, OptimizationProblem& problem, const IterationRecord& first,
   const QualityGuard& guard, QualityGuard::State& state, OptimizeResult& result)
@@ -235,7 +236,7 @@ void verify(const Mesh& mesh, OptimizationProblem& problem, const IterationRecor
   const auto cells = static_cast<std::size_t>(mesh.view().numberOfCells);
   if (larger && state.values.size() == cells && problem.isSumOfSquaresOf(guard.judged()))
   {
-    // The values of all elements are there, measured on the points.
+    // The values of all elements at the points are available.
     IterationRecord now = first;
     now.objective = sumOfSquares(state.values, problem.options().threads);
     larger = isLargerThere(now);
@@ -245,7 +246,7 @@ void verify(const Mesh& mesh, OptimizationProblem& problem, const IterationRecor
     problem.restart(std::vector<double>(result.points));
     larger = isLargerThere(problem.record(0));
   }
-  // Points put back are between others that have moved on.
+  // Restored points lie between others that have moved.
   const bool far = result.restored > 0 && !problem.isWithinTolerance();
   if (larger || state.violated || far)
   {
@@ -267,10 +268,10 @@ void verify(const Mesh& mesh, OptimizationProblem& problem, const IterationRecor
 }
 
 /**
- * @brief After verify() has gone back to the input: where the objective had been reduced by more
- * than the criterion of convergence, sweeps from the input on, each of which keeps the worst
- * element. Points that slide cannot go far back one by one: those between them would be squeezed.
- * Otherwise the input has converged, and the reason is the one it `ended` for.
+ * @brief After verify() has restored the input: if the objective had been reduced by more than the
+ * convergence criterion, sweeps from the input, preserving the worst element in each sweep. Sliding
+ * points cannot be moved far back one by one: the points between them would be squeezed. Otherwise
+ * the input has converged, and the reason is `ended`.
  */
 void holdWorst(const Mesh& mesh, OptimizationSteps& steps, const IterationRecord& first,
   const QualityGuard& guard, const StoppingTest& watch, StopReason ended,
@@ -301,7 +302,7 @@ void holdWorst(const Mesh& mesh, OptimizationSteps& steps, const IterationRecord
   result.unchanged = std::equal(result.points.begin(), result.points.end(), mesh.view().points);
 }
 
-/// Optimizes from result.points on; returns whether there is more to do, with elements that have
+/// Optimizes starting from result.points; returns whether to continue with elements that have
 /// become valid.
 bool optimizeStage(const Mesh& mesh, const OptimizeOptions& options, const QualityGuard& guard,
   const Stopwatch& clock, const Ranks& ranks, OptimizeResult& result)
@@ -335,7 +336,7 @@ bool optimizeStage(const Mesh& mesh, const OptimizeOptions& options, const Quali
     result.reason = StopReason::NoFreeVertices;
     return false;
   }
-  // Elements that are valid keep points that slide in the part of the surface that they are on.
+  // Valid elements keep sliding points in their part of the surface.
   const bool mayCross =
     steps.slidesOnSurface() && (first.inverted > 0 || mesh.nonFinitePoints() > 0);
   const bool onlyLocal =
@@ -368,7 +369,7 @@ bool optimizeStage(const Mesh& mesh, const OptimizeOptions& options, const Quali
 }
 
 //------------------------------------------------------------------------------
-/// Runs untangle() with the time that is left; false if the observer stopped it, on any rank.
+/// Runs untangle() with the remaining time; false if the observer stopped it, on any rank.
 bool untangleFirst(const Mesh& mesh, const OptimizeOptions& options, const Stopwatch& clock,
   const Ranks& ranks, OptimizeResult& result)
 {
@@ -376,7 +377,7 @@ bool untangleFirst(const Mesh& mesh, const OptimizeOptions& options, const Stopw
   std::vector<unsigned char> held = heldInUntangling(options, mesh.view().numberOfPoints, slides);
   if (!options.fixed && slides)
   {
-    held.clear(); // the boundary, without what slides
+    held.clear(); // the boundary, without sliding points
   }
   else if (!options.fixed && !held.empty())
   {
@@ -398,8 +399,8 @@ bool untangleFirst(const Mesh& mesh, const OptimizeOptions& options, const Stopw
   return true;
 }
 
-/// Throws Error if the parts of a mesh on several ranks are not of one dimension and, if planar, in
-/// one plane at right angles to an axis.
+/// Throws Error if the parts of a mesh on several ranks do not have one dimension or, if planar,
+/// one plane perpendicular to an axis.
 void requireDivisible(const Mesh& mesh, const Ranks& ranks)
 {
   const Dimension whole = ranks.dimension(mesh);
@@ -409,14 +410,14 @@ void requireDivisible(const Mesh& mesh, const Ranks& ranks)
     (box[0] == box[3] || box[1] == box[4] || box[2] == box[5]);
   if (whole != Dimension::None && !(whole == Dimension::Volume && !differ) && !planar)
   {
-    throw Error("A mesh on several processes, or in the reproducible order, is a volume mesh or "
-                "lies in a plane at right angles to an axis, and this one does not: gather it on "
-                "one process, in ParaView by Aggregate Dataset, with Reproducible Order off.");
+    throw Error("A mesh on several processes, or in the reproducible order, must be a volume "
+                "mesh or lie in a plane perpendicular to an axis, but this one does not: "
+                "gather it on one process (in ParaView, with Aggregate Dataset) and turn "
+                "Reproducible Order off.");
   }
 }
 
-/// The options of a mesh on several ranks, whose directions and flags of points are those that the
-/// owners have.
+/// The options for a mesh on several ranks, with the directions and point flags of the owners.
 struct AgreedOptions
 {
   AgreedOptions(const OptimizeOptions& given, Index points, const Ranks& ranks)
@@ -427,7 +428,7 @@ struct AgreedOptions
       throw Error("The fixed points of a mesh on several ranks must be given, see rankBoundary().");
     }
     this->fixed.assign(given.fixed, given.fixed + points);
-    this->fixed.reserve(1); // not null, which would be the boundary
+    this->fixed.reserve(1); // avoid a null pointer, which means the boundary
     ranks.exchange(this->fixed.data());
     this->options.fixed = this->fixed.data();
     agreeOn(this->options.slidePlanes, this->planes, points, ranks);
@@ -480,7 +481,7 @@ void OptimizeResult::keepStart(std::vector<double> start, Index inverted)
 //------------------------------------------------------------------------------
 namespace
 {
-/// Flags the points of the elements of a surface in space that have no normal; counts these.
+/// Flags the points of elements without a normal on a surface in space; counts these elements.
 Index flagWithoutNormal(
   const Mesh& mesh, const std::vector<signed char>& validity, std::vector<unsigned char>& flags)
 {
@@ -550,8 +551,8 @@ OptimizeResult run(const Mesh& mesh, const OptimizeOptions& given,
     if (!options.untangleFirst)
     {
       throw Error(std::to_string(result.invertedBefore) +
-        " elements are inverted or degenerate, and no objective repairs them: untangle first, or "
-        "add the untangling metric.");
+        " elements are inverted or degenerate, and no objective repairs them: untangle the "
+        "mesh first, or add the untangling metric.");
     }
     if (!untangleFirst(mesh, options, clock, ranks, result))
     {
@@ -561,18 +562,18 @@ OptimizeResult run(const Mesh& mesh, const OptimizeOptions& given,
   }
 
   QualityGuard guard(mesh, validity, options, ranks);
-  // Elements left out join the objective as soon as they are valid: another stage.
+  // Excluded elements join the objective as soon as they are valid: start another stage.
   const Index invalid = result.invertedAfter;
   const std::vector<double> untangled = result.untangled ? result.points : std::vector<double>();
   while (optimizeStage(mesh, options, guard, clock, ranks, result))
   {
   }
-  // Verified on the points themselves: the optimizers measure simplices, in units of the mean edge,
-  // where others may vanish.
+  // Verify with the actual points: the optimizers measure simplices in units of the mean edge, in
+  // which small elements may vanish.
   if (result.invertedAfter > invalid && !options.allowInversion &&
     mesh.dimension() != Dimension::Surface)
   {
-    // Coordinates of too different magnitudes.
+    // The magnitudes of the coordinates differ too much.
     result.keepStart(result.untangled
         ? untangled
         : std::vector<double>(view.points, view.points + 3 * view.numberOfPoints),

@@ -12,7 +12,7 @@ enum class Reach
   Either
 };
 
-/// No default: the compiler warns of an appended optimizer without a case.
+/// No default, so that the compiler warns about a new optimizer without a case.
 Reach reachOf(Optimizer optimizer)
 {
   switch (optimizer)
@@ -28,7 +28,7 @@ Reach reachOf(Optimizer optimizer)
     case Optimizer::NewtonConjugateGradient:
       return Reach::Global;
   }
-  throw Error("There is no optimizer " + std::to_string(static_cast<int>(optimizer)) + ".");
+  throw Error("Unknown optimizer " + std::to_string(static_cast<int>(optimizer)) + ".");
 }
 }
 

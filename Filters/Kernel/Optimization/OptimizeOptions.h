@@ -21,17 +21,17 @@ namespace tautline
 enum class Optimizer : int
 {
   /**
-   * @brief LocalNewton. Sums of the inverse mean ratio on meshes with more than 1 % of other cells
-   * than simplices, and where its sweeps converge slowly (by the ratio of their gains):
-   * NewtonConjugateGradient from the start, or from its harmonic map if valid and the objective
-   * smaller there; near the minimum, where more than 25 sweeps are to be expected, from where they
-   * are. Where that stops short of the minimum, or holds points, sweeps and NewtonConjugateGradient
-   * in turn: with slideSurface, or a model of the boundary, it moves points on flat patches and
-   * straight curves and holds the others; with limits, only sweeps move points inwards from their
-   * limit. Meshes of surfaces in space need a model for it, and go back to where sweeps led if it
-   * leaves the surfaceTolerance. Not with a maximum as objective, nor several in lexicographic
-   * order. Should a sweep fail to reduce several objectives, LimitedMemoryBFGS from there, unless
-   * points slide on the surface.
+   * @brief LocalNewton in general. For sums of the inverse mean ratio on meshes with more than 1 %
+   * of cells other than simplices, and if sweeps converge slowly (according to the ratio of their
+   * gains): NewtonConjugateGradient from the start, or from its harmonic map if that is valid and
+   * has a smaller objective; near the minimum, if more than 25 sweeps are expected, from the
+   * current points. If that stops before the minimum, or holds points, sweeps and
+   * NewtonConjugateGradient alternate: with slideSurface, or a model of the boundary, it moves
+   * points on flat patches and straight curves and holds the others; with limits, only sweeps move
+   * points inwards from their limit. Surface meshes in space need a model for it, and return to the
+   * result of the sweeps if it exceeds the surfaceTolerance. Not used with a maximum as objective
+   * or with several objectives in lexicographic order. If a sweep fails to reduce several
+   * objectives, LimitedMemoryBFGS continues from there, unless points slide on the surface.
    */
   Automatic = 0,
   LocalNewton = 1,            ///< sweeps over one-vertex patches, a damped Newton step in each
@@ -53,28 +53,28 @@ struct StoppingCriteria
 {
   /// Sweeps of the local algorithms, iterations of the others; at least 0.
   int maximumIterations = 300;
-  /// Seconds of wall time for the whole run, untangling included; 0: no limit. Honoured within two
+  /// Seconds of wall time for the whole run, including untangling; 0: no limit. Honored within two
   /// iterations.
   double maximumSeconds = 0.0;
-  /// Stop when the gradient's norm has fallen by this factor and, unless relativeChange is 0, an
-  /// estimate of what is left to gain is small, too; 0: never. Not used by NewtonConjugateGradient.
+  /// Stop when the gradient norm has decreased by this factor and, unless relativeChange is 0, the
+  /// estimated remaining gain is also small; 0: never. Not used by NewtonConjugateGradient.
   double gradientNorm = 1e-6;
   /**
-   * @brief Stop when the objective hardly changes any more; 0: never. Relative to it: the decrease
-   * of an iteration; of sweeps also what further ones would gain if their gains went on as a
-   * geometric series; of NewtonConjugateGradient half of the squared Newton decrement.
+   * @brief Stop when the objective hardly changes anymore; 0: never. Relative to the objective: the
+   * decrease of an iteration; for sweeps, also the extrapolated gain of further sweeps as a
+   * geometric series; for NewtonConjugateGradient, half of the squared Newton decrement.
    */
   double relativeChange = 1e-5;
   /// "Inaccurate smoothing", section 3.4: stop when all mean qualities keep two decimals.
   bool twoDigits = false;
   /**
    * @brief Section 2.4: stop when this fraction of the possible reduction is reached (0.95 there);
-   * 1: never. The possible reduction is that to bestKnown, or an estimate from the decreases of
-   * the iterations so far: of two where the mean of the inverse mean ratio is below 3, of six where
-   * it is above, of three of other metrics.
+   * 1: never. The possible reduction is the reduction to bestKnown, or an estimate from the
+   * decreases of the iterations so far: from two if the mean inverse mean ratio is below 3, from
+   * six if it is above, from three for other metrics.
    */
   double reduction = 1.0;
-  /// The objective of the completely smoothed mesh; NaN: not known. 0 is that of untangling
+  /// The objective of the completely smoothed mesh; NaN: unknown. It is 0 for untangling
   /// objectives.
   double bestKnown = std::numeric_limits<double>::quiet_NaN();
   /// Stop when every element is valid.
@@ -84,7 +84,7 @@ struct StoppingCriteria
 /// Ready-made options. The numbers are stable: ParaView state files hold them.
 enum class Preset : int
 {
-  Custom = 0,      ///< the options as they are
+  Custom = 0,      ///< the options unchanged
   FastCleanUp = 1, ///< sum of squared IMR, a few sweeps: 95 % of the possible reduction
   BestShape = 2,   ///< sum of squared IMR to convergence
   /// Shape (IMR) and size at once, by the objective product; not for a boundary that moves freely.
@@ -95,7 +95,7 @@ enum class Preset : int
   PreserveShape = 6, ///< sum of squared IMR against the elements of a reference mesh (targets)
   WorstElement =
     7, ///< BestShape, then the worst element; the mean hardly worsens (improveWorst 0.01)
-  /// Not of optimize(): improveFaces() of tautline/Polyhedral/ImproveFaces.h.
+  /// Not for optimize(): uses improveFaces() of tautline/Polyhedral/ImproveFaces.h.
   FiniteVolumes = 8
 };
 
@@ -107,15 +107,15 @@ struct OptimizeOptions : BoundaryConstraints
   ScalarizationOptions scalarization;
   Optimizer optimizer = Optimizer::Automatic;
   StoppingCriteria stopping;
-  /// How far each point may go from where it is in the input, 3D distance; one per point (infinity
-  /// = any), or null. An Error where untangling, which comes first, needs more.
+  /// The largest 3D distance of each point from its input position; one per point (infinity = any),
+  /// or null. Throws Error if the preceding untangling needs more.
   const double* limits = nullptr;
   SurfaceConstraint surface;
-  /// Lets steps invert elements that are valid. Off: they are shortened.
+  /// Whether steps may invert valid elements. Off: steps are shortened.
   bool allowInversion = false;
   /**
-   * @brief What to do with an input that has inverted elements and objectives none of which repairs
-   * them: untangle() first (on), or throw Error (off).
+   * @brief How to treat an input with inverted elements if no objective repairs them: untangle()
+   * first (on), or throw Error (off).
    */
   bool untangleFirst = true;
   /**
@@ -126,63 +126,63 @@ struct OptimizeOptions : BoundaryConstraints
   /// Local algorithms: leave out vertices that moved less than this times their shortest edge; 0:
   /// none.
   double culling = 1e-3;
-  /// Steps in each patch of the local algorithms. It becomes 1 when a sweep
-  /// has raised the objective.
+  /// The number of steps in each patch of the local algorithms. It becomes 1 when a sweep has
+  /// increased the objective.
   int patchIterations = 1;
   /**
-   * @brief Over-relaxation of LocalNewton: a step is this times Newton's, 1 to 2 (exclusive).
-   * Around 1.4 halves the number of sweeps.
+   * @brief Over-relaxation of LocalNewton: a step is this times the Newton step, 1 to 2
+   * (exclusive). Around 1.4 halves the number of sweeps.
    */
   double relaxation = 1.4;
   /**
    * @brief WorstElement: after the objective has converged, improves the worst element as long as
-   * the mean of the first objective's metric does not get worse by more than this fraction of it,
-   * or by five times as much where another metric judges the worst element (the two disagree on
-   * stretched hexahedra); 0: off.
+   * the mean of the metric of the first objective does not worsen by more than this fraction, or by
+   * five times as much if another metric defines the worst element (the two disagree on stretched
+   * hexahedra); 0: off.
    *
-   * In planar and volume meshes of one process that have more than a few other cells than
-   * simplices, judged by the scaled Jacobian of corners or the inverse mean ratio, all points move
-   * together first, from the input on if its elements are valid, and sweeps that hold what was
-   * reached follow. This is the result if its worst element is better, and if the mean is worse
-   * than in the input by at most that fraction and the fraction of the way to the ideal that the
-   * worst element has gone; the objective may then be larger than in the input, see
-   * OptimizeResult::worstFirst. Points of the boundary stay within half of surfaceTolerance of what
-   * they slide on; at places on facets and surface the distances are at most what they were about
-   * there, and surfaceTolerance (0: a thousandth of the diagonal).
+   * In planar and volume meshes on one process with more than a few cells other than simplices, and
+   * with the scaled Jacobian or the inverse mean ratio as the metric of the worst element, all
+   * points move together first (from the input if its elements are valid), followed by sweeps that
+   * preserve this improvement. This result is used if its worst element is better, and if the mean
+   * worsens relative to the input by at most this fraction and by at most the relative progress of
+   * the worst element toward the ideal; the objective may then be larger than in the input, see
+   * OptimizeResult::worstFirst. Boundary points stay within half of surfaceTolerance of the surface
+   * on which they slide; at samples of facets and surface, the distances are limited to the
+   * previous distances there and surfaceTolerance (0: a thousandth of the diagonal).
    */
   double improveWorst = 0.0;
   /**
-   * @brief The metric that tells which element is the worst one, for improveWorst and for what may
-   * not get worse. Not set: where improveWorst is above 0 the scaled Jacobian for meshes with
-   * quadrilaterals, hexahedra or wedges, but no pyramids; else the metric of the first objective.
+   * @brief The metric that defines the worst element, for improveWorst and holdWorst. Not set: if
+   * improveWorst is above 0, the scaled Jacobian for meshes with quadrilaterals, hexahedra or
+   * wedges but no pyramids; otherwise the metric of the first objective.
    */
   std::optional<Metric> worstMetric;
-  /// Whether the worst element of a valid input must not get worse. Off: a smaller objective may
-  /// cost single elements.
+  /// Whether the worst element of a valid input must not get worse. Off: individual elements may
+  /// get worse for a smaller objective.
   bool holdWorst = true;
   int threads = 0; ///< 0: all cores. The result does not depend on it.
   /**
    * @brief Called after each iteration; return false to stop. Called from the calling thread. While
-   * untangle() runs first, the records are its own, with 0 for what belongs to the objectives, and
-   * progress stays 0.
+   * untangle() runs first, the records come from it, with 0 for the objectives, and progress stays
+   * 0.
    */
   std::function<bool(const IterationState&)> observer;
 };
 
 /**
- * @brief Sets objectives, scalarization, optimizer and stopping criteria to those of a preset; the
- * rest stays. For PreserveShape, set objectives[0].evaluation.targets afterwards
+ * @brief Sets objectives, scalarization, optimizer and stopping criteria to the values of a preset;
+ * other options are unchanged. For PreserveShape, set objectives[0].evaluation.targets afterwards
  * (referenceTargets()).
  */
 TAUTLINE_KERNEL_EXPORT void applyPreset(Preset preset, OptimizeOptions& options);
 
-/// Why options need the whole mesh in one place, if they do.
+/// The reason why options need the whole mesh on one process, if they do.
 TAUTLINE_KERNEL_EXPORT NeedOfWholeMesh needOfWholeMesh(const OptimizeOptions& options);
 
 /**
- * @brief Throws Error for options that need the whole mesh in one place, by name and with the
- * remedy: the templates p-mean and maximum, points that slide on curved surfaces, improvement
- * of the worst element.
+ * @brief Throws Error, with the names and a remedy, for options that need the whole mesh on one
+ * process: the templates p-mean and maximum, points that slide on curved surfaces, improvement of
+ * the worst element.
  */
 TAUTLINE_KERNEL_EXPORT void requireLocalOptions(const OptimizeOptions& options);
 }

@@ -28,14 +28,14 @@ void requireFinite(const double* values, Index count, const char* what)
   }
 }
 
-/// Whether a point has a direction: of a plane or a line that it slides in.
+/// Whether a point has a direction: of a plane or line in which it slides.
 bool slides(const double* directions, Index p)
 {
   return directions &&
     norm({ directions[3 * p], directions[3 * p + 1], directions[3 * p + 2] }) > 0;
 }
 
-/// Whether a point of the boundary may leave it.
+/// Whether any boundary point may leave the boundary.
 bool boundaryMoves(const Mesh& mesh, const OptimizeOptions& options, const Ranks& ranks)
 {
   if (!options.fixed || options.slideSurface)
@@ -54,7 +54,7 @@ bool boundaryMoves(const Mesh& mesh, const OptimizeOptions& options, const Ranks
   return ranks.any(moves);
 }
 
-/// With a free boundary, a mesh shrinks to a point where smaller elements are better.
+/// With a free boundary, a mesh shrinks to a point if smaller elements are better.
 void checkSizes(const Mesh& mesh, const OptimizeOptions& options, const Ranks& ranks)
 {
   const int dimension = mesh.dimension() == Dimension::Volume ? 3 : 2;
@@ -74,14 +74,14 @@ void checkSizes(const Mesh& mesh, const OptimizeOptions& options, const Ranks& r
   }
 }
 
-/// Throws Error for what combines sums over the whole mesh only.
+/// Throws Error for options that can only combine sums over the whole mesh.
 void checkPatches(const OptimizeOptions& options)
 {
   const std::string what = "Objectives that are combined on patches need ";
   if (isGlobal(options.optimizer) || needDifferences(options))
   {
     throw Error(what +
-      "a local optimizer, and metrics with derivatives of their own: choose "
+      "a local optimizer, and metrics with analytic derivatives: choose "
       "Automatic, Local Newton or Local Conjugate Gradient.");
   }
   const auto hasNoPatches = [](const Objective& objective)
@@ -97,18 +97,19 @@ void checkPatches(const OptimizeOptions& options)
   }
 }
 
-/// Throws Error if a metric without derivatives of its own is an objective of what needs them.
+/// Throws Error if a metric without analytic derivatives is an objective of a method that needs
+/// them.
 void checkDifferences(const Mesh& mesh, const OptimizeOptions& options)
 {
   if (!needDifferences(options))
   {
     return;
   }
-  const std::string what = "A metric without derivatives of its own, such as a metric of Python, ";
+  const std::string what = "A metric without analytic derivatives, such as a Python metric, ";
   if (isLocal(options.optimizer) || options.optimizer == Optimizer::NewtonConjugateGradient)
   {
     throw Error(what +
-      "is optimized by differences for all points at once: choose Automatic, L-BFGS "
+      "is optimized with finite differences for all points at once: choose Automatic, L-BFGS "
       "or a conjugate gradient, or register it in C++.");
   }
   if (options.improveWorst > 0)
@@ -120,20 +121,20 @@ void checkDifferences(const Mesh& mesh, const OptimizeOptions& options)
     options.limits)
   {
     throw Error(what +
-      "moves points in a plane or in space with a fixed boundary, or along flat "
-      "parts, only: register it in C++ to let them slide on surfaces or to limit "
-      "their way.");
+      "only moves points in a plane or in space with a fixed boundary, or along flat parts: "
+      "register it in C++ to let them slide on surfaces or to limit their displacement.");
   }
 }
 
-/// The metric that judges the worst element must have a value for each, and a better direction.
+/// The metric of the worst element must have a value for each element, and a direction of
+/// improvement.
 void checkWorstMetric(const Mesh& mesh, Metric metric)
 {
   const MetricInfo& info = metricInfo(metric);
   if (info.direction == Direction::Neutral)
   {
     throw Error(std::string(info.label) +
-      " is neither better large nor small: choose another metric for the worst element.");
+      " has no direction of improvement: choose another metric for the worst element.");
   }
   const int dimension = mesh.dimension() == Dimension::Volume ? 3 : 2;
   for (const CellBlock& block : mesh.blocks())
@@ -160,8 +161,8 @@ void checkOptions(const Mesh& mesh, const OptimizeOptions& options, const Ranks&
     !(stop.relativeChange >= 0) || !(stop.reduction > 0 && stop.reduction <= 1))
   {
     throw Error(
-      "Stopping criteria must not be negative, and the fraction of the possible reduction "
-      "lies between 0 (exclusive) and 1.");
+      "Stopping criteria must not be negative, and the fraction of the possible reduction must "
+      "lie between 0 (exclusive) and 1.");
   }
   if (!(options.relaxation > 0 && options.relaxation < 2))
   {
@@ -169,8 +170,8 @@ void checkOptions(const Mesh& mesh, const OptimizeOptions& options, const Ranks&
   }
   if (options.patchIterations < 1 || !(options.culling >= 0) || !(options.improveWorst >= 0))
   {
-    throw Error("Patch iterations must be at least 1; culling and the mean's allowance for the "
-                "worst element must not be negative.");
+    throw Error("Patch iterations must be at least 1; culling and the allowance of the mean "
+                "for the worst element must not be negative.");
   }
   if (options.leaving && !options.fixed)
   {
@@ -178,8 +179,8 @@ void checkOptions(const Mesh& mesh, const OptimizeOptions& options, const Ranks&
   }
   if (options.leaving && (options.limits || options.onGeometry))
   {
-    throw Error("Points that may leave the surface have no other limits, and no other surface than "
-                "that of the mesh: leave them out.");
+    throw Error("Points that may leave the surface cannot have other limits or a surface other "
+                "than the mesh: remove these options.");
   }
   const bool global = isGlobal(options.optimizer);
   checkDifferences(mesh, options);
@@ -189,13 +190,13 @@ void checkOptions(const Mesh& mesh, const OptimizeOptions& options, const Ranks&
   }
   if (options.model && !options.parts)
   {
-    throw Error("A model needs the part of it that each point slides on.");
+    throw Error("A model needs the part on which each point slides.");
   }
   const bool surface = mesh.dimension() == Dimension::Surface;
   if (global && (surface || options.slideSurface || options.model || options.limits))
   {
     throw Error(std::string(surface  ? "A surface in space needs"
-                    : options.limits ? "Limits on the way of points need"
+                    : options.limits ? "Limits on the displacement of points need"
                                      : "Sliding on a boundary or on interfaces needs") +
       " a local optimizer: choose Automatic or Local Newton.");
   }
@@ -286,8 +287,8 @@ void requireWithinLimits(const OptimizeOptions& options, const double* start,
   if (beyond > 0)
   {
     throw Error("The elements are untangled first, and that moves " + std::to_string(beyond) +
-      " points farther than their limits: raise the limits of the displacement, or run Untangle "
-      "Mesh before, from whose result the limits then count.");
+      " points farther than their limits: raise the limits of the displacement, or run "
+      "Untangle Mesh first, so that the limits are relative to its result.");
   }
 }
 
@@ -301,8 +302,8 @@ void requireValues(const std::vector<Objective>& objectives, const std::vector<d
     {
       throw Error("The metric \"" + std::string(info.label) +
         "\" has no finite value on some element, or the sum of its values is too large. Its "
-        "formula must have a value on every valid element: Element Quality shows 0 where it has "
-        "none.");
+        "formula must have a value on every valid element: Element Quality shows 0 where it is "
+        "undefined.");
     }
   }
 }

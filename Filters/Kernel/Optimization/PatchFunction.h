@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PatchFunction.h
- * @brief What one objective is as a function of one free vertex: in closed form where it is an
- * energy f(N, D), else through the metric's own evaluator.
- * Internal: not installed.
+ * @brief One objective as a function of one free vertex: in closed form if it is an energy f(N, D),
+ * otherwise through the evaluator of the metric. Internal: not installed.
  */
 #ifndef tautline_PatchFunction_h
 #define tautline_PatchFunction_h
@@ -15,15 +14,15 @@
 
 namespace tautline
 {
-/// Cells of one type around a vertex, as the metrics' evaluators take them.
+/// Cells of one type around a vertex, in the form required by the metric evaluators.
 struct CellBatch
 {
   Batch batch;
   int block = 0;
-  Packet here[MaxNodes]; ///< 1 in the lanes whose cell has the vertex in this place, else 0
+  Packet here[MaxNodes]; ///< 1 in the lanes whose cell has the vertex at this position, otherwise 0
 };
 
-/// All that is known of the vertex at hand. One per thread.
+/// The data of the current vertex. One per thread.
 template <int Dim>
 struct VertexPatch
 {
@@ -35,7 +34,7 @@ struct VertexPatch
   Vec3 axes[Dim];
 };
 
-/// The value, gradient and Hessian of one objective by the displacement of a vertex.
+/// The value, gradient and Hessian of one objective with respect to the displacement of a vertex.
 template <int Dim>
 class PatchFunction
 {
@@ -44,9 +43,9 @@ public:
   virtual bool needsCells() const { return false; }
   /// The scale of PowerMean and Maximum: the objective's current value.
   virtual void setCurrent(double /*value*/) {}
-  /// The objective when its patch sum has changed by `change` since setCurrent(value).
+  /// The objective after its patch sum has changed by `change` since setCurrent(value).
   virtual double objective(double value, double change) const { return value + change; }
-  /// Its derivative by the change, at 0.
+  /// Its derivative with respect to the change, at 0.
   virtual double slope(double /*value*/) const { return 1.0; }
   virtual double value(const VertexPatch<Dim>& patch, const double* d) const = 0;
   virtual PatchSum<Dim> sum(const VertexPatch<Dim>& patch, const double* d, bool hessian) const = 0;
@@ -139,8 +138,8 @@ public:
     PatchSum<Dim> result = this->gradient(patch, d);
     if (hessian)
     {
-      // By differences of the gradient, over a small fraction of the patch's size; one-sided ones
-      // are enough for a direction.
+      // Use differences of the gradient over a small fraction of the patch size; one-sided
+      // differences suffice for a direction.
       constexpr double fraction = 1e-6;
       const double h = fraction * sizeOf(patch.simplices);
       for (int r = 0; r < Dim; ++r)

@@ -8,12 +8,13 @@ namespace tautline
 {
 namespace
 {
-/// How much of the surface tolerance the other elements of a volume may use before the worst one is
-/// improved: points at the limit are in its way. In a surface, the worst elements use it at once.
+/// The fraction of the surface tolerance that the elements of a volume may use before the worst one
+/// is improved: points at the limit would obstruct it. On a surface, the worst elements use all of
+/// it immediately.
 constexpr double beforeWorst = 0.3;
-/// How much of the surface tolerance is used at the places where distances are measured: places in
-/// between may be farther, in surfaces more often than in volumes, whose elements hold the points
-/// of flat facets, and most of all at points that leave the surface.
+/// The fraction of the surface tolerance used at the sample points: positions between them may be
+/// farther away, more often on surfaces than in volumes, whose elements constrain the points of
+/// flat facets, and most often at points that leave the surface.
 constexpr double marginOfSliding = 0.85, marginOfSurface = 0.8, marginOfLeaving = 0.7;
 }
 
@@ -56,7 +57,7 @@ void OptimizationProblem::makeSurface()
 }
 
 //------------------------------------------------------------------------------
-/// Apart from the boundary: what is near to that is not near to an interface.
+/// Separate from the boundary: proximity to the boundary does not imply proximity to an interface.
 void OptimizationProblem::makeInterfaces()
 {
   const OptimizeOptions& options = this->Options;
@@ -75,14 +76,14 @@ void OptimizationProblem::makeInterfaces()
 }
 
 //------------------------------------------------------------------------------
-/// Between facets of the mesh now and as they were, both ways.
+/// The distance between the current and the original facets of the mesh, in both directions.
 double OptimizationProblem::distanceOf(
   const SurfaceProjection& now, const SurfaceProjection& before) const
 {
   const int threads = this->Options.threads;
   const int divisions = this->Limit ? SurfaceLimit::divisions : 2;
   const double there = now.distanceTo(before, threads, divisions);
-  // A mesh may be of a part of a geometry.
+  // A mesh may represent only a part of a geometry.
   const double back = this->Options.onGeometry ? 0.0 : before.distanceTo(now, threads, divisions);
   return this->Simplices->scale() * std::max(there, back);
 }
@@ -115,7 +116,7 @@ bool OptimizationProblem::isWithinTolerance() const
   {
     return true;
   }
-  // A boundary that is free, or slides on flat parts only, has no tolerance.
+  // A boundary that is free, or only slides on flat parts, has no tolerance.
   const auto slides = [&](Index p)
   {
     return p >= 0 &&

@@ -16,9 +16,9 @@ namespace tautline
 namespace
 {
 /**
- * @brief Calls visit(found, cell, validity, value) for each element of the mesh's dimension, with
- * one object for the elements of a chunk; value is null where the metric is not defined.
- * @param values set to those of the metric
+ * @brief Calls visit(found, cell, validity, value) for each element of the mesh dimension, with one
+ * object for the elements of a chunk; value is null if the metric is undefined.
+ * @param values set to the values of the metric
  * @return the objects, in the order of the chunks
  */
 template <class Found, class Visit>
@@ -48,7 +48,7 @@ std::vector<Found> visitElements(const Mesh& mesh, const std::vector<signed char
   return all;
 }
 
-/// What a chunk of elements has.
+/// The extremes of a chunk of elements.
 struct Extremes
 {
   bool valid = true;
@@ -56,7 +56,8 @@ struct Extremes
   double smallest = std::numeric_limits<double>::infinity(), largest = -smallest;
 };
 
-/// The name of a cell. On ranks its number is that of a part: where it is does not depend on these.
+/// Describes a cell. On several ranks, cell numbers are local, but the position is independent of
+/// the ranks.
 std::string placeOf(const Mesh& mesh, Index cell, const Ranks& ranks)
 {
   if (!ranks.several())
@@ -160,7 +161,7 @@ QualityGuard::QualityGuard(const Mesh& input, const std::vector<signed char>& va
   this->Worst = this->Larger ? -ranks.maximum(-all.smallest) : ranks.maximum(all.largest);
   this->ValidInput = this->Active = !ranks.any(!all.valid);
   this->OnPatches = options.objectives.size() > 1 && options.scalarization.onPatches;
-  // Elements that the metric does not judge stay valid nevertheless.
+  // Elements without a metric value must still stay valid.
   this->HoldWorst =
     this->HoldWorst && info.direction != Direction::Neutral && std::isfinite(this->Worst);
 }
@@ -224,7 +225,7 @@ Index QualityGuard::restore(OptimizationProblem& problem, const double* to) cons
   std::vector<unsigned char> restored(view.numberOfPoints, 0), back = restored;
   problem.store();
   std::vector<double> points = problem.points();
-  constexpr int maxRounds = 20; // then all points go back
+  constexpr int maxRounds = 20; // after which all points are moved back
   for (int round = 0; this->Active; ++round)
   {
     const Mesh& mesh = problem.moving();

@@ -14,13 +14,13 @@ namespace tautline
 {
 namespace
 {
-/// What the values of an objective's metric are on a mesh.
+/// The metric values of an objective on a mesh.
 struct Values
 {
   double objective = 0, mean = 0, worst = 0;
 };
 
-/// @param q the values of the metric, or empty: then they are measured
+/// @param q the values of the metric, or empty to compute them
 Values valuesOf(
   const Mesh& mesh, const Objective& given, int threads, const Ranks& ranks, std::vector<double>& q)
 {
@@ -35,7 +35,7 @@ Values valuesOf(
   const bool larger = info.direction == Direction::LargerIsBetter;
   Values values;
   std::vector<double> own;
-  double squares = 0, worst = -std::numeric_limits<double>::infinity(); // larger the worse
+  double squares = 0, worst = -std::numeric_limits<double>::infinity(); // larger is worse
   for (const CellBlock& block : mesh.blocks())
   {
     for (Index i = 0; isElement(mesh, block.type) && i < block.count; ++i)
@@ -62,11 +62,11 @@ Values valuesOf(
   return values;
 }
 
-/// Scalarizes the objectives of the record, and compares them with those of the start.
+/// Scalarizes the objectives of the record, and compares them with the initial ones.
 void compareObjectives(
   const OptimizeOptions& options, const std::vector<double>& start, RoundedResult& found)
 {
-  // In the lexicographic method the first objective counts, which may rise by the tolerance.
+  // In the lexicographic method, the first objective decides, and may increase by the tolerance.
   const bool lexicographic = options.scalarization.method == Scalarization::Lexicographic;
   std::vector<double> weights;
   for (const Objective& objective : options.objectives)
@@ -116,7 +116,7 @@ RoundedResult measureRounded(const Mesh& mesh, const std::vector<signed char>& v
   }
   std::vector<double> judged;
   found.worseWorst = guard.violatedAt(rounded, now, judged);
-  // The first objective's metric judges as a rule.
+  // By default, the metric of the first objective is used.
   const Objective& first = options.objectives[0];
   const bool same = guard.judged().metric == first.metric;
   std::vector<double> start;

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// What the simplices of an optimization add up to, in packets, and which of them are the worst.
+// SPDX-License-Identifier: BSD-3-Clause Sums over the simplices of an optimization, in packets, and
+// the worst simplices.
 #include "OptimizationProblem.h"
 
 #include "PatchFunction.h"
@@ -13,7 +13,7 @@ namespace tautline
 {
 namespace
 {
-/// What a chunk of simplices adds to a record.
+/// The contribution of a chunk of simplices to a record.
 struct SimplexTotals
 {
   double shape = 0, shape2 = 0, worst = 0, size = 0, size2 = 0, largest = 0;
@@ -32,7 +32,7 @@ struct SimplexTotals
   }
 };
 
-/// N and D of the packet of simplices from `first` on, of which `lanes` are there.
+/// N and D of the packet of simplices starting at `first`, with `lanes` valid lanes.
 template <int Dim>
 void simplexInvariants(const SimplexMesh& mesh, std::int32_t first, int lanes, Packet& N, Packet& D)
 {
@@ -95,11 +95,11 @@ void simplexInvariants(const SimplexMesh& mesh, std::int32_t first, int lanes, P
   }
 }
 
-/// The inverse mean ratios of a packet of simplices; 0 of those that are not valid.
+/// The inverse mean ratios of a packet of simplices; 0 for invalid ones.
 template <int Dim>
 Packet ratiosOf(const Packet& N, const Packet& D, Mask& valid)
 {
-  // As Mesh::classifyCells() has it, with |T|^n in place of the product of the edges.
+  // As in Mesh::classifyCells(), with |T|^n instead of the product of the edges.
   valid = D > Mesh::degenerateTolerance() * (Dim == 2 ? N : N * sqrt(N));
   const Packet s = inverseCbrt(D);
   return select(valid, Dim == 2 ? 0.5 * N / D : (1.0 / 3.0) * N * s * s, Packet{});
@@ -139,7 +139,7 @@ void forEachAbove(const SimplexMesh& mesh, int threads, const Bound& bound, cons
     });
 }
 
-/// The totals of all simplices, of which those of weight 0 do not count.
+/// The totals of all simplices, excluding simplices of weight 0.
 template <int Dim>
 SimplexTotals totalsOf(const SimplexMesh& mesh, const std::vector<double>& weights, int threads)
 {
@@ -217,7 +217,7 @@ void OptimizationProblem::summarizeSimplices(IterationRecord& record) const
     record.mean.push_back((term.shapePower > 0 ? t.shape : size * t.size) / valid);
     record.worst.push_back(term.shapePower > 0 ? t.worst : size * t.largest);
   }
-  // The metric of a mean ratio is the reciprocal; its mean is not known from these sums.
+  // The metric of a mean ratio is the reciprocal, whose mean cannot be derived from these sums.
   record.inverted = t.invalid;
 }
 
@@ -248,7 +248,7 @@ std::vector<unsigned char> OptimizationProblem::verticesAbove(double ratio) cons
     {
       if (corner[k] < mesh.freeVertices())
       {
-        // Threads may write the same flag at once; they write the same.
+        // Threads may write the same flag concurrently, but they write the same value.
         __atomic_store_n(&flags[corner[k]], static_cast<unsigned char>(1), __ATOMIC_RELAXED);
       }
     }

@@ -21,7 +21,7 @@ bool canSlideWorst(const OptimizationProblem& problem, const Objective& judged)
 
 namespace
 {
-/// The surface of a mesh without features, for points that slide on it as it is.
+/// The surface of a mesh without features, for points that slide on it directly.
 struct WholeSurface
 {
   WholeSurface(const Mesh& mesh, const unsigned char* slides)

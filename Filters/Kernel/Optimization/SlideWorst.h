@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SlideWorst.h
- * @brief Improves the worst element by all points together, with those of the boundary.
+ * @brief Improves the worst element by moving all points together, including the boundary.
  * Internal: not installed.
  */
 #ifndef tautline_SlideWorst_h
@@ -12,16 +12,16 @@
 namespace tautline
 {
 /**
- * @brief Whether slideWorst() has a measure for what judges the worst element, and can keep the
- * constraints of the points: of planar and volume meshes of one process, by the scaled Jacobian or
- * the inverse mean ratio without targets, without limits of the distance of points.
+ * @brief Whether slideWorst() supports the metric of the worst element and the constraints of the
+ * points: for planar and volume meshes on one process, with the scaled Jacobian or the inverse mean
+ * ratio without targets, and without limits on point distances.
  */
 bool canSlideWorst(const OptimizationProblem& problem, const Objective& judged);
 
 /**
- * @brief Raises the worst corner by a barrier, see improveSliding(). The mean counts as in
+ * @brief Improves the worst corner with a barrier, see improveSliding(). The mean is treated as in
  * improveWorst().
- * @param mesh where the points were at first, which has the surface
+ * @param mesh the initial mesh, which defines the surface
  * @param report called after each round that improved the mesh; returns false to stop
  * @return whether the time limit ended it
  */

@@ -9,15 +9,15 @@ namespace tautline
 {
 namespace
 {
-/// Of the distance: what is nearer counts as so far, which is found faster.
+/// Fraction of the distance: smaller distances are treated as this one, which is faster.
 constexpr double near = 0.1;
-/// Places in a leaf of their tree, at most.
+/// The maximum number of samples in a leaf of their tree.
 constexpr std::size_t facetsPerLeaf = 8;
-/// Of the distance: a step that leaves the planes of facets by less slides in them. Thousands of
-/// such steps do not add up to what counts.
+/// Fraction of the distance: a step that leaves the planes of facets by less slides in them. Even
+/// thousands of such steps are negligible.
 constexpr double inPlane = 1e-9;
 
-/// Triangles in the balls round their centres: what is far from a ball is far from its triangle.
+/// Triangles in balls around their centers: a point far from a ball is far from its triangle.
 class BalledTriangles
 {
 public:
@@ -32,8 +32,8 @@ public:
     }
   }
 
-  /// Of x from the triangles, squared. Anything up to `enough` if it is that, and anything beyond
-  /// `most` if it is that.
+  /// The squared distance of x from the triangles, or any number up to `enough` if it is at most
+  /// `enough`, or any number above `most` if it exceeds `most`.
   double squareDistanceTo(const Vec3& x, double enough, double most) const
   {
     double least = std::numeric_limits<double>::infinity(), reach = slack * std::sqrt(most);
@@ -56,7 +56,7 @@ public:
   }
 
 private:
-  static constexpr double slack = 1 + 1e-6; ///< far more than rounding
+  static constexpr double slack = 1 + 1e-6; ///< far above rounding errors
   struct Ball
   {
     Vec3 center;
@@ -67,11 +67,12 @@ private:
   std::vector<Ball> Balls;
 };
 
-/// The corners around a vertex whose triangles go once around it, seen along their mean normal.
+/// The corners around a vertex whose triangles surround it exactly once, seen along their mean
+/// normal.
 class Fan
 {
 public:
-  /// @param triangles those without the vertex are left out
+  /// @param triangles triangles without the vertex are ignored
   Fan(const std::vector<std::array<Vec3, 3>>& triangles, const Vec3& vertex)
     : Origin(vertex)
   {
@@ -91,7 +92,7 @@ public:
     {
       return;
     }
-    // Axes at right angles to the normal and to each other.
+    // Axes perpendicular to the normal and to each other.
     this->Axes[2] = (1 / length) * normal;
     const Vec3 side = cross(this->Axes[2], edges[0][0] - vertex);
     if (!(norm(side) > 0))
@@ -107,11 +108,11 @@ public:
   }
 
   /**
-   * @brief The largest difference of the heights of the triangles if the vertex moves to x; its way
-   * if these are not the graph of a function, before or after.
+   * @brief The largest height difference of the triangles if the vertex moves to x; its
+   * displacement if they are not the graph of a function, before or after.
    *
-   * Between two such functions it is largest at one of the places of the vertex, or where an edge
-   * at the one crosses an edge at the other.
+   * Between two such functions it is largest at one of the two vertex positions, or where an edge
+   * of one crosses an edge of the other.
    */
   double changeTo(const Vec3& x) const
   {
@@ -146,7 +147,8 @@ public:
 private:
   static double cross2(const Vec3& a, const Vec3& b) { return a[0] * b[1] - a[1] * b[0]; }
 
-  /// Sorts the edges, each from the end of the one before; whether that is a ring.
+  /// Chains the edges, each starting at the end of the previous one; returns whether they form a
+  /// ring.
   static bool isOneRound(std::vector<std::array<Vec3, 2>>& edges)
   {
     for (std::size_t i = 0; i + 1 < edges.size(); ++i)
@@ -168,7 +170,8 @@ private:
     return { dot(d, this->Axes[0]), dot(d, this->Axes[1]), dot(d, this->Axes[2]) };
   }
 
-  /// Whether the triangles with the vertex at a place face the viewer and go around it once.
+  /// Whether the triangles with the vertex at a position face the viewer and surround it exactly
+  /// once.
   bool isGraph(const Vec3& place) const
   {
     int rounds = 0;
@@ -202,7 +205,7 @@ private:
 
   Vec3 Origin;
   std::array<Vec3, 3> Axes = {};
-  std::vector<Vec3> Corners; ///< in order; empty: not once around
+  std::vector<Vec3> Corners; ///< in order; empty if they do not surround the vertex exactly once
 };
 }
 
@@ -230,7 +233,7 @@ SurfaceLimit::SurfaceLimit(const Mesh& mesh, const std::vector<SurfaceFacet>& fa
 }
 
 //------------------------------------------------------------------------------
-/// Whether all vertices are where the mesh has them, and the surface, which is its own.
+/// Whether all vertices are at their mesh positions and the surface is the mesh surface.
 bool SurfaceLimit::isAsIn(const Mesh& mesh) const
 {
   std::int32_t v = 0;
@@ -243,7 +246,7 @@ bool SurfaceLimit::isAsIn(const Mesh& mesh) const
 }
 
 //------------------------------------------------------------------------------
-/// The facets that can move, and those of each free vertex.
+/// Finds the facets that can move, and the facets of each free vertex.
 void SurfaceLimit::findFacets(const Mesh& mesh, const std::vector<SurfaceFacet>& facets)
 {
   std::vector<std::int32_t> vertexOf(mesh.view().numberOfPoints, -1);
@@ -296,7 +299,7 @@ void SurfaceLimit::findFacets(const Mesh& mesh, const std::vector<SurfaceFacet>&
 }
 
 //------------------------------------------------------------------------------
-/// The largest distance that a facet of v may have.
+/// The upper bound of the distance of the facets of v.
 double SurfaceLimit::farOf(std::int32_t v, Way way) const
 {
   double far = 0;
@@ -316,7 +319,7 @@ void SurfaceLimit::setFar(std::int32_t v, Way way, double far)
 }
 
 //------------------------------------------------------------------------------
-/// The facets of v, with v at a place, as triangles (an edge has its last corner twice).
+/// The facets of v, with v at a position, as triangles (an edge repeats its last corner).
 std::vector<SurfaceLimit::Triangle> SurfaceLimit::trianglesAt(
   std::int32_t v, const Vec3& place) const
 {
@@ -338,7 +341,8 @@ std::vector<SurfaceLimit::Triangle> SurfaceLimit::trianglesAt(
 }
 
 //------------------------------------------------------------------------------
-/// The largest distance of triangles from the surface; if it is above `most`, anything above that.
+/// The largest distance of triangles from the surface; or any number above `most` if it exceeds
+/// `most`.
 double SurfaceLimit::farthest(const std::vector<Triangle>& triangles, double most) const
 {
   std::vector<Vec3> places;
@@ -357,8 +361,8 @@ double SurfaceLimit::farthest(const std::vector<Triangle>& triangles, double mos
 }
 
 //------------------------------------------------------------------------------
-/// The largest distance from the facets after, of the places of the surface that are near to the
-/// facets before; if it is above the limit, anything above that.
+/// The largest distance from the new facets of the surface samples near the old facets; or any
+/// number above the limit if it exceeds the limit.
 double SurfaceLimit::farthestPlace(
   const Vec3& center, const std::vector<Triangle>& before, const std::vector<Triangle>& after) const
 {
@@ -426,10 +430,10 @@ void SurfaceLimit::forget(std::int32_t v)
 
 //------------------------------------------------------------------------------
 /**
- * @brief Whether the facets of v cover the same places with v here as with v at `before`: v has
- * moved in the planes of all its triangles, and no triangle is turned over. Where two planes meet,
- * v has then moved along their edge; a border, where the triangles of v end, must be such an edge,
- * too, and so must the front of a crack, where they fold back.
+ * @brief Whether the facets of v cover the same region as with v at `before`: v has moved in the
+ * planes of all its triangles, and no triangle is flipped. Where two planes meet, v has then moved
+ * along their edge; a border, where the triangles of v end, must also be such an edge, as must the
+ * front of a crack, where they fold back.
  * @param triangles of v, with v at `before`
  */
 bool SurfaceLimit::coversSame(
@@ -442,7 +446,7 @@ bool SurfaceLimit::coversSame(
     const Vec3 edge = end - before, off = cross(edge, step);
     return dot(off, off) <= tolerance * tolerance * dot(edge, edge);
   };
-  // The ends of the edges at v that one triangle has so far, with its normal.
+  // The ends of the edges at v that belong to one triangle so far, with its normal.
   struct OpenEdge
   {
     Vec3 end, normal;
@@ -522,7 +526,7 @@ bool SurfaceLimit::staysNear(std::int32_t v, const Vec3& before)
     there = there > this->Distance ? this->farthest(now, this->Distance) : there;
     if (there > this->Distance)
     {
-      // The input is on its own surface, but may be far from another one.
+      // The input lies on its own surface, but may be far from another one.
       const double most = this->Tree ? 0 : this->farthest(old, std::numeric_limits<double>::max());
       if (!(most > this->Distance && this->farthest(now, most) <= most))
       {

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SurfaceLimit.h
- * @brief Keeps a surface whose vertices slide near to where it was.
- * Internal: not installed.
+ * @brief Keeps a surface with sliding vertices near its original position. Internal: not installed.
  */
 #ifndef tautline_SurfaceLimit_h
 #define tautline_SurfaceLimit_h
@@ -17,56 +16,57 @@ namespace tautline
 {
 /**
  * @class tautline::SurfaceLimit
- * @brief Tells of a step of one vertex whether its facets stay within a distance of a surface, and
- * the surface within that distance of its facets.
+ * @brief Checks for a step of one vertex whether its facets stay within a distance of a surface,
+ * and the surface within that distance of its facets.
  *
- * Vertices may be on the surface and the facets between them cut off its bends. So distances are
- * measured at places all over both. A place of the surface counts to the facets of a vertex if it
- * was within the distance of them: as each step keeps these places near, all that are near at the
- * start stay near.
+ * Even if vertices are on the surface, the facets between them may cut off its bends, so distances
+ * are measured at samples of both. A surface sample is assigned to the facets of a vertex if it was
+ * within the distance of them: since each step keeps these samples near, all samples that are near
+ * at the start stay near.
  *
- * How far a facet may be is kept with it. A step adds to that at most by how much the facets of the
- * vertex move along their mean normal, and by its own length: as long as the sum is within the
- * distance, nothing needs to be measured again. Nothing is added where a vertex slides on a flat
- * part, or along a straight edge between two: its facets cover what they covered.
+ * An upper bound of the distance is stored with each facet. A step increases it by at most the
+ * motion of the facets of the vertex along their mean normal, and by at most the step length: as
+ * long as the sum is within the distance, no measurement is needed. Nothing is added if a vertex
+ * slides on a flat part, or along a straight edge between two: its facets still cover the same
+ * region.
  */
 class TAUTLINE_KERNEL_EXPORT SurfaceLimit
 {
 public:
-  /// Edges are divided into so many parts for the places at which distances are measured.
+  /// The number of parts into which edges are divided for the sample points.
   static constexpr int divisions = 4;
 
   /**
    * @param facets of the mesh
-   * @param surface that the facets are kept near to; must outlive the limit
-   * @param distance in the coordinates of `simplices`, above 0; places between those at which it is
-   * measured may be somewhat farther
-   * @param bothWays whether the surface is to stay near to the facets, too
+   * @param surface the surface near which the facets are kept; must outlive the limit
+   * @param distance in the coordinates of `simplices`, above 0; positions between samples may be
+   * slightly farther
+   * @param bothWays whether the surface must also stay near the facets
    */
   SurfaceLimit(const Mesh& mesh, const std::vector<SurfaceFacet>& facets,
     const SimplexMesh& simplices, const SurfaceProjection& surface, double distance, bool bothWays);
 
   /**
-   * @brief Whether free vertex v of the simplices may be where it is, if it was at `before`. At the
-   * same time only for vertices without a common facet.
+   * @brief Whether free vertex v of the simplices may move from `before` to its current position.
+   * Concurrent calls only for vertices without a common facet.
    */
   bool allows(std::int32_t v, const Vec3& before);
   /// Uses a share of the distance, 0 to 1, from now on. It must not shrink.
   void setShare(double share);
-  /// To be called where vertices have moved without allows().
+  /// Must be called after vertices have moved without allows().
   void forget();
-  /// The same for one vertex, which has gone back after allows().
+  /// The same for one vertex that has moved back after allows().
   void forget(std::int32_t v);
-  /// One flag per free vertex: its last step was refused.
+  /// One flag per free vertex: nonzero if its last step was rejected.
   const std::vector<unsigned char>& held() const { return this->Refused; }
 
 private:
   using Triangle = std::array<Vec3, 3>;
-  /// A facet by its vertices, -1 after the last.
+  /// The vertices of a facet, -1 after the last.
   struct Facet
   {
     std::array<std::int32_t, MaxFaceNodes> vertices;
-    std::array<double, 2> far = { unknown, unknown }; ///< see Way: not farther than this
+    std::array<double, 2> far = { unknown, unknown }; ///< see Way: upper bounds of the distances
   };
   /// From the facets to the surface, and from the surface to the facets.
   enum Way
@@ -96,9 +96,10 @@ private:
   double Whole, Distance; ///< as given, and the share in use
   std::vector<Facet> Facets;
   std::vector<std::int32_t> Starts, FacetsAt; ///< of each free vertex
-  std::vector<unsigned char> Refused;         ///< of each free vertex: its last step
-  std::vector<Vec3> Places;                   ///< of the surface
-  std::unique_ptr<PointTree> Tree;            ///< of these, if they are to stay near
+  /// per free vertex: whether its last step was rejected
+  std::vector<unsigned char> Refused;
+  std::vector<Vec3> Places;        ///< of the surface
+  std::unique_ptr<PointTree> Tree; ///< of these samples, if they must stay near
 };
 }
 #endif

@@ -20,8 +20,8 @@ Vec3 unit(const Vec3& v)
 bool keepsSurface(const OptimizationProblem& problem)
 {
   const OptimizeOptions& options = problem.options();
-  // Without its features, steps would lead across sharp edges. Where they lead is compared with the
-  // surface afterwards, if that is the own one.
+  // Without features, steps would cross sharp edges. The result is compared with the surface
+  // afterwards if it is the surface of the mesh.
   if (!problem.surface() || !options.model || options.limits ||
     (options.onGeometry && options.surfaceTolerance > 0) || options.slidePlanes ||
     options.slideLines || problem.moving().nonFinitePoints() > 0)

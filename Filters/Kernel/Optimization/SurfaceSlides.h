@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SurfaceSlides.h
- * @brief The points of a surface in space, moved all at once: kept on the surface.
+ * @brief Keeps the points of a surface in space on the surface while all are moved at once.
  * Internal: not installed.
  */
 #ifndef tautline_SurfaceSlides_h
@@ -13,33 +13,33 @@
 
 namespace tautline
 {
-/// Whether Newton's method keeps what holds the points of a surface in space.
+/// Whether Newton's method can satisfy the constraints of the points of a surface in space.
 bool keepsSurface(const OptimizationProblem& problem);
 
 /**
  * @class tautline::SurfaceSlides
- * @brief Steps go along the tangent planes, on curves along the tangents, and from there to the
- * closest place of the surface.
+ * @brief Steps follow the tangent planes (on curves, the tangents), and then move to the closest
+ * position on the surface.
  */
 class SurfaceSlides
 {
 public:
   /// @param problem of a surface mesh whose free points all slide on a surface or curve; must
-  /// outlive this
+  /// outlive this object
   explicit SurfaceSlides(OptimizationProblem& problem);
 
-  /// Takes the free points of the problem back to what they slide on.
+  /// Moves the free points of the problem back onto their surfaces or curves.
   void place();
-  /// What a point may follow of a vector, by its last place.
+  /// The component of a vector that a point may follow, based on its last position.
   Vec3 project(std::size_t p, const Vec3& g) const;
-  /// Keeps the normals of the elements as they are.
+  /// Stores the current normals of the elements.
   void keepNormals();
-  /// Whether a corner of an element has turned over since keepNormals(), or against the surface at
+  /// Whether a corner of an element has flipped since keepNormals(), or relative to the surface at
   /// the points of the element.
   bool turned() const;
 
 private:
-  /// Of an element: its points, and the vector areas of the corners there.
+  /// The points of an element and the vector areas of its corners.
   struct Corners
   {
     std::array<Index, MaxFaceNodes> points;
@@ -55,8 +55,8 @@ private:
   std::vector<std::int32_t> VertexOf;             ///< per point; -1: fixed
   std::vector<Vec3> Directions;                   ///< per free vertex: unit normals and tangents
   std::vector<Vec3> Normals;                      ///< per cell
-  /// Per free vertex: 1 or -1 where the elements around are on that side of its direction at the
-  /// start, 0 where they are on both, or it is on a curve.
+  /// Per free vertex: 1 or -1 if the surrounding elements are on that side of its direction at the
+  /// start, 0 if they are on both sides or the vertex is on a curve.
   std::vector<signed char> Sides;
 };
 }

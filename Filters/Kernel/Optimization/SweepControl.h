@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SweepControl.h
- * @brief When sweeps and other iterations end.
- * Internal: not installed.
+ * @brief Stopping rules of sweeps and other iterations. Internal: not installed.
  */
 #ifndef tautline_SweepControl_h
 #define tautline_SweepControl_h
@@ -19,14 +18,15 @@
 
 namespace tautline
 {
-/// Sums of element values differ in the last digits from sums of patches; so much is no loss.
+/// Sums of element values differ in the last digits from sums of patches; smaller differences are
+/// not a deterioration.
 constexpr double roundingOfSums = 1e-12;
 
-/// Whether an optimization ends.
+/// Decides whether an optimization ends.
 class StoppingTest
 {
 public:
-  /// @param outOfTime whether the time limit is reached; of several ranks, on any
+  /// @param outOfTime returns whether the time limit is reached, on any rank
   StoppingTest(const OptimizeOptions& options, std::function<bool()> outOfTime)
     : Stop(options.stopping)
     , Shape(!options.objectives.empty() && options.objectives[0].metric == Metric::InverseMeanRatio)
@@ -34,7 +34,7 @@ public:
   {
   }
 
-  /// Whether the last record of the history is one to stop at.
+  /// Whether to stop at the last record of the history.
   bool ends(const std::vector<IterationRecord>& history, StopReason& reason) const
   {
     const IterationRecord& now = history.back();
@@ -78,9 +78,9 @@ public:
 
 private:
   /**
-   * @brief To the best known objective, or to the limit of a geometric series of the last
-   * decreases; infinity where these do not tell. Ratios of decreases tend to grow: the largest of
-   * the last ones counts, and its growth is added.
+   * @brief The reduction to the best known objective, or to the limit of a geometric series of the
+   * last decreases; infinity if inconclusive. Ratios of decreases tend to grow: the largest of the
+   * last ones is used, plus its growth.
    */
   double possibleReduction(const std::vector<IterationRecord>& history) const
   {
@@ -110,7 +110,7 @@ private:
       : history.front().objective - history.back().objective + decrease(0) * ratio / (1.0 - ratio);
   }
 
-  /// The first decreases are those of single elements that are nearly flat, if there are any.
+  /// The first decreases are dominated by individual nearly flat elements, if there are any.
   std::size_t decreasesNeeded(const IterationRecord& now) const
   {
     constexpr double flat = 3; // mean inverse mean ratio; 1 is ideal
@@ -135,20 +135,20 @@ private:
   static constexpr std::size_t ratiosCompared = 3;
 
   StoppingCriteria Stop;
-  bool Shape; ///< the first metric is the inverse mean ratio
+  bool Shape; ///< whether the first metric is the inverse mean ratio
   std::function<bool()> OutOfTime;
 };
 
-/// The value of the scalarization at the last record. That of the record itself may be of the
-/// objective that the lexicographic method reduced before.
+/// The value of the scalarization at the last record. The value stored in the record may refer to
+/// the previous objective of the lexicographic method.
 inline double scalarized(const Scalarizer& scalarizer, const IterationRecord& record)
 {
   return record.objectives.size() > 1 ? scalarizer.value(record.objectives) : record.objective;
 }
 
-/// The record with a finite objective for the history, where there is one. In the lexicographic
-/// method it is infinite where points put back have raised an objective reached before beyond its
-/// bound: the one of the stage then counts.
+/// The record with a finite objective for the history, if possible. In the lexicographic method, it
+/// is infinite if restored points have increased an earlier objective beyond its bound: then the
+/// objective of the current stage is used.
 inline IterationRecord presentable(const Scalarizer& scalarizer, IterationRecord record)
 {
   if (scalarizer.stage() > 0 && !std::isfinite(record.objective))
@@ -158,8 +158,8 @@ inline IterationRecord presentable(const Scalarizer& scalarizer, IterationRecord
   return record;
 }
 
-/// Whether the objective is larger than at the start. In the lexicographic method it is another one
-/// in each stage: the first one counts then, which may rise by the tolerance.
+/// Whether the objective is larger than at the start. The lexicographic method has a different
+/// objective in each stage: the first one is used, which may increase by the tolerance.
 inline bool isLarger(const ScalarizationOptions& options, const Scalarizer& scalarizer,
   const IterationRecord& now, const IterationRecord& first)
 {
@@ -169,7 +169,7 @@ inline bool isLarger(const ScalarizationOptions& options, const Scalarizer& scal
   return !((other ? now.objectives[0] : now.objective) <= start + rise * std::abs(start));
 }
 
-/// What sweeps have gained so far, and what is to be expected of further ones.
+/// The gains of sweeps so far, and the expected gains of further ones.
 class SweepGains
 {
 public:
@@ -180,33 +180,33 @@ public:
   }
 
   void add(double gain) { this->Gains.push_back(gain); }
-  /// Of another objective, from here on.
+  /// Starts over for another objective.
   void clear() { this->Gains.clear(); }
 
-  /// The objective's distance from its minimum if the gains go on as a geometric series; at least
-  /// the last gain.
+  /// The distance of the objective from its minimum if the gains continue as a geometric series; at
+  /// least the last gain.
   double remaining() const
   {
     const double ratio = std::min(this->ratio(), slowest);
     return this->Gains.back() * std::max(1.0, ratio / (1.0 - ratio));
   }
 
-  /// Whether sweeps converge so slowly that a global method is worth its start.
+  /// Whether sweeps converge so slowly that a global method pays off.
   bool stiff(double objective) const
   {
     constexpr double slow = 0.6;     // isotropic meshes have ratios below a half
-    constexpr double worthIt = 0.01; // of the objective, that is still to be gained
+    constexpr double worthIt = 0.01; // fraction of the objective that can still be gained
     return this->Gains.size() >= this->Trial && this->ratio() > slow &&
       this->remaining() > worthIt * std::abs(objective);
   }
 
   /**
-   * @brief Whether, if the gains go on as a geometric series, more sweeps are needed until the rest
-   * is this fraction of the objective than Newton's method costs near the minimum.
+   * @brief Whether, with gains continuing as a geometric series, the sweeps needed until the rest
+   * is this fraction of the objective cost more than Newton's method near the minimum.
    */
   bool slow(double objective, double relativeChange) const
   {
-    constexpr double worthNewton = 25; // sweeps; a run of Newton's method from afar takes 30 to 85
+    constexpr double worthNewton = 25; // sweeps; a Newton run from a distant start costs 30 to 85
     const double ratio = std::min(this->ratio(), slowest);
     const double rest = this->remaining() / (relativeChange * std::abs(objective));
     return this->Gains.size() >= this->Trial && relativeChange > 0 && ratio > 0 && rest > 1 &&
@@ -214,10 +214,10 @@ public:
   }
 
 private:
-  static constexpr std::size_t window = 3; // sweeps that a ratio is the mean of
+  static constexpr std::size_t window = 3; // number of sweeps over which a ratio is averaged
   static constexpr double slowest = 0.99;  // ratio that gives an estimate
 
-  /// Of a gain to the one before; 0 where there are too few, or none.
+  /// The ratio of a gain to the previous one; 0 if there are too few, or none.
   double ratio() const
   {
     const std::size_t n = this->Gains.size();
@@ -226,21 +226,21 @@ private:
       : 0.0;
   }
 
-  std::size_t Trial; // sweeps before they are judged
+  std::size_t Trial; // number of sweeps before the rate is estimated
   std::vector<double> Gains;
 };
 
-/// How sweeps converge.
+/// The convergence of sweeps.
 enum class Slowness
 {
   None,   ///< fast enough
-  Costly, ///< each takes so long that none is tried
+  Costly, ///< each sweep takes so long that none is tried
   Far,    ///< too slowly, and the minimum is far away
   Near    ///< too slowly near the minimum
 };
 
-/// Whether Automatic may go over to Newton's method: for one function of the points, smooth enough,
-/// that is wanted at its minimum.
+/// Whether Automatic may switch to Newton's method: for a single, sufficiently smooth function that
+/// is minimized to convergence.
 inline bool mayUseNewton(const OptimizeOptions& options)
 {
   const auto rough = [](const Objective& o)
@@ -255,10 +255,10 @@ inline bool mayUseNewton(const OptimizeOptions& options)
     !options.allowInversion && !(stop.reduction < 1) && !stop.twoDigits && !stop.allValid;
 }
 
-/// The criteria as those of a global method. @param alone or after sweeps
+/// Converts the criteria for a global method. @param alone whether it runs alone, not after sweeps
 inline MinimizeOptions minimizeOptions(const StoppingCriteria& stop, Optimizer method, bool alone)
 {
-  // After sweeps, an iteration may reduce the objective little at first.
+  // After sweeps, the first iterations may reduce the objective only slightly.
   constexpr double afterSweeps = 0.1;
   MinimizeOptions options;
   options.method = method;
@@ -269,19 +269,19 @@ inline MinimizeOptions minimizeOptions(const StoppingCriteria& stop, Optimizer m
   if (method == Optimizer::NewtonConjugateGradient)
   {
     constexpr double worthIterations = 0.05;
-    options.leastGain = alone ? 0.0 : worthIterations; // sweeps may lead further
-    // Its steps alone tell how far the minimum is.
+    options.leastGain = alone ? 0.0 : worthIterations; // sweeps may achieve more
+    // Only its steps indicate the distance to the minimum.
     options.relativeChange = options.gradientNorm = 0;
   }
   return options;
 }
 
 /**
- * @brief Whether the sweeps have converged, and why. A gradient small beside that of a start with
- * nearly flat elements tells nothing where much is still to be gained.
+ * @brief Whether the sweeps have converged, and the reason. A small gradient, compared with a start
+ * with nearly flat elements, is not conclusive if much can still be gained.
  * @param all whether the sweep visited every vertex
- * @param remaining what further sweeps are worth, for relativeChange
- * @param possible what they may gain
+ * @param remaining the expected gain of further sweeps, for relativeChange
+ * @param possible their possible gain
  * @param size of the objective
  */
 inline bool converged(const StoppingCriteria& stop, const SweepResult& sweep, bool all,

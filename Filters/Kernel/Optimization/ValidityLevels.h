@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ValidityLevels.h
- * @brief How much of each element is valid.
- * Internal: not installed.
+ * @brief The degree of validity of each element. Internal: not installed.
  */
 #ifndef tautline_ValidityLevels_h
 #define tautline_ValidityLevels_h
@@ -11,7 +10,7 @@
 
 namespace tautline
 {
-/// How much of an element is valid; must not fall.
+/// The degree of validity of an element; must not decrease.
 enum ValidityLevel : signed char
 {
   InvalidCorners = 0, ///< or not measured

@@ -10,10 +10,10 @@ namespace tautline
 {
 namespace
 {
-/// Steps on a surface with a limit are tried as they are, then with a half, a quarter, ...
+/// Steps on a surface with a limit are tried in full, then with a half, a quarter, ...
 constexpr int maxProjections = 3;
 
-/// A unit vector at a right angle to n, and the third.
+/// A unit vector perpendicular to n, and the third axis.
 void tangentsOf(const Vec3& n, Vec3* tangents)
 {
   int smallest = 0;
@@ -83,7 +83,7 @@ std::vector<Vec3> VertexOptimizer<Dim>::normalsAt(std::int32_t v) const
 }
 
 //------------------------------------------------------------------------------
-/// An orthonormal basis of the directions a vertex may go in, as columns; returns how many.
+/// An orthonormal basis of the allowed directions of a vertex, as columns; returns their number.
 template <int Dim>
 int VertexOptimizer<Dim>::allowed(std::int32_t v, double basis[Dim][Dim]) const
 {
@@ -161,8 +161,8 @@ int VertexOptimizer<Dim>::allowed(std::int32_t v, double basis[Dim][Dim]) const
 }
 
 //------------------------------------------------------------------------------
-/// Goes along the tangents and back to the surface, and stays there if that is better than before;
-/// less far where that would take the surface too far, or the vertex beyond its limit.
+/// Steps along the tangents and back to the surface, and accepts the position if it is better; the
+/// step is shortened if it would move the surface too far or the vertex beyond its limit.
 template <int Dim>
 bool VertexOptimizer<Dim>::placeOnSurface(
   std::int32_t v, const double* d, const Scalarizer& scalarizer, PatchWorker<Dim>& w)
@@ -216,7 +216,7 @@ bool VertexOptimizer<Dim>::placeOnSurface(
         [&](SurfaceLimit* limit) { return limit->allows(v, before); });
     for (std::size_t i = 0; !placed && limits.size() > 1 && i < limits.size(); ++i)
     {
-      limits[i]->forget(v); // one of them may have allowed what another one did not
+      limits[i]->forget(v); // one limit may have allowed a step that another one rejected
     }
   }
   if (!placed)
@@ -232,8 +232,8 @@ bool VertexOptimizer<Dim>::placeOnSurface(
 }
 
 //------------------------------------------------------------------------------
-/// Whether no simplex at v is inverted. Unfolded triangles never are: they must not have turned
-/// over against the normals before, if there are any.
+/// Whether no simplex at v is inverted. Unfolded triangles never are: instead, they must not have
+/// flipped relative to the previous normals, if there are any.
 template <int Dim>
 bool VertexOptimizer<Dim>::isUpright(
   std::int32_t v, const VertexPatch<Dim>& patch, const std::vector<Vec3>& normals) const
@@ -258,7 +258,7 @@ bool VertexOptimizer<Dim>::isUpright(
 
 //------------------------------------------------------------------------------
 /// The largest step up to t that keeps x + d + t s within the limit of the vertex. On a surface in
-/// space, where steps are along tangents, placeOnSurface() keeps it.
+/// space, where steps are tangential, placeOnSurface() enforces the limit.
 template <int Dim>
 double VertexOptimizer<Dim>::limited(
   std::int32_t v, const double* d, const double* s, double t) const
@@ -267,7 +267,7 @@ double VertexOptimizer<Dim>::limited(
   {
     return t;
   }
-  // |a + t s|^2 <= limit^2 with a the way gone so far.
+  // |a + t s|^2 <= limit^2, where a is the displacement so far.
   const double limit = this->Options.limits[v];
   double a2 = -limit * limit, as = 0, s2 = 0;
   for (int c = 0; c < Dim; ++c)
@@ -284,7 +284,7 @@ double VertexOptimizer<Dim>::limited(
 }
 
 //------------------------------------------------------------------------------
-/// The way of v from its start when displaced by d; returns its length.
+/// The displacement of v from its start after a displacement by d; returns its length.
 template <int Dim>
 double VertexOptimizer<Dim>::wayFromStart(std::int32_t v, const double* d, double* way) const
 {
@@ -298,9 +298,9 @@ double VertexOptimizer<Dim>::wayFromStart(std::int32_t v, const double* d, doubl
   return std::sqrt(length2);
 }
 
-/// Where the vertex is at its limit and `direction` leads outwards, the direction along the limit
-/// instead, to which search() takes the vertex back. Not on surfaces, which have their own way
-/// back.
+/// If the vertex is at its limit and `direction` points outward, replaces it by the direction along
+/// the limit; search() moves the vertex back to the limit. Not on surfaces, which have a separate
+/// projection.
 template <int Dim>
 bool VertexOptimizer<Dim>::turnAlongLimit(
   const PatchWorker<Dim>& w, const PatchSum<Dim>& sum, const double* d, double* direction) const
@@ -320,7 +320,8 @@ bool VertexOptimizer<Dim>::turnAlongLimit(
   {
     return false;
   }
-  // What is allowed, without the way itself: the last of an orthonormal basis that begins with it.
+  // The allowed directions without the displacement itself: the remaining vectors of an orthonormal
+  // basis that begins with it.
   double basis[Dim][Dim] = {}, along[Dim][Dim] = {};
   const int allowed = this->allowed(v, basis);
   int found = 0;
@@ -344,7 +345,7 @@ bool VertexOptimizer<Dim>::turnAlongLimit(
       }
     };
     remove([&](int c) { return way[c]; }, 1 / (length * length));
-    if (found > 0) // one, at most
+    if (found > 0) // at most one
     {
       remove([&](int c) { return along[c][0]; }, 1.0);
     }
@@ -352,7 +353,8 @@ bool VertexOptimizer<Dim>::turnAlongLimit(
     {
       size2 += u[c] * u[c];
     }
-    constexpr double parallel2 = 1e-2; // one of the directions is nearly that of the way
+    // one of the directions is nearly parallel to the displacement
+    constexpr double parallel2 = 1e-2;
     for (int c = 0; size2 > parallel2 && c < Dim; ++c)
     {
       along[c][found] = u[c] / std::sqrt(size2);

@@ -13,9 +13,10 @@ namespace tautline
 namespace
 {
 constexpr int maximumHalvings = 12;
-/// Fraction of the way to the first inversion that a step may go.
+/// The largest step as a fraction of the distance to the first inversion.
 constexpr double safety = 0.9;
-/// Changes above this fraction of an objective use the scalarization itself, not its slope.
+/// For changes above this fraction of an objective, the scalarization itself is used instead of its
+/// slope.
 constexpr double visibleChange = 1e-6;
 }
 
@@ -28,7 +29,7 @@ VertexOptimizer<Dim>::VertexOptimizer(SimplexMesh& simplices, const Mesh& mesh, 
   , Points(points)
   , Options(options)
 {
-  // Metrics read all points of the cells; energies of simplices their own patch only.
+  // Metrics read all points of the cells; energies of simplices only read their patch.
   for (const LocalTerm& term : terms)
   {
     this->Functions.push_back(this->makeFunction(term));
@@ -216,7 +217,7 @@ template <int Dim>
 void VertexOptimizer<Dim>::findSlopes(const Scalarizer& scalarizer, PatchWorker<Dim>& w) const
 {
   const std::size_t n = this->Functions.size();
-  if (n == 1) // every scalarization of one objective is as low as that is
+  if (n == 1) // every scalarization of a single objective is monotonic
   {
     w.slopes[0] = 1.0;
     return;
@@ -262,8 +263,8 @@ PatchSum<Dim> VertexOptimizer<Dim>::combined(const PatchWorker<Dim>& w) const
 }
 
 //------------------------------------------------------------------------------
-/// What the scalarized objective changes by when the vertex goes to d; w.trial gets the patch sums'
-/// changes.
+/// The change of the scalarized objective if the vertex moves to d; w.trial receives the changes of
+/// the patch sums.
 template <int Dim>
 double VertexOptimizer<Dim>::changeAt(
   const Scalarizer& scalarizer, PatchWorker<Dim>& w, const double* d) const
@@ -282,7 +283,7 @@ double VertexOptimizer<Dim>::changeAt(
   {
     return std::isnan(linear) ? std::numeric_limits<double>::infinity() : linear;
   }
-  // Differences of the whole objective lose digits; they are only taken where there are enough.
+  // Differences of the whole objective lose digits; they are only used if enough remain.
   const double before = scalarizer.value(w.now);
   std::vector<double>& after = w.now;
   std::vector<double> kept = w.now;
@@ -346,8 +347,8 @@ void VertexOptimizer<Dim>::newtonIn(
 }
 
 //------------------------------------------------------------------------------
-/// Turns `direction` into Polak-Ribiere+'s and returns the step to where the slope would vanish by
-/// its change over a small one; 0 if no step is possible.
+/// Updates `direction` by Polak-Ribiere+ and returns the step at which the slope would vanish,
+/// extrapolated from a small step; 0 if no step is possible.
 template <int Dim>
 double VertexOptimizer<Dim>::conjugate(PatchWorker<Dim>& w, const PatchSum<Dim>& sum,
   const double* d, int iteration, double* direction, double* lastGradient) const
@@ -361,7 +362,7 @@ double VertexOptimizer<Dim>::conjugate(PatchWorker<Dim>& w, const PatchSum<Dim>&
   const double beta = iteration > 0 && last2 > 0 ? std::max(0.0, mixed / last2) : 0.0;
   double basis[Dim][Dim] = {};
   const int free = this->allowed(w.patch.vertex, basis);
-  // The negative gradient in the directions that are allowed, and a multiple of the last direction.
+  // The negative gradient in the allowed directions, plus a multiple of the last direction.
   for (int r = 0; r < Dim; ++r)
   {
     double projected = free == Dim ? -sum.g[r] : 0.0;
@@ -388,7 +389,7 @@ double VertexOptimizer<Dim>::conjugate(PatchWorker<Dim>& w, const PatchSum<Dim>&
     probe[c] = d[c] + h * direction[c];
     slopeHere += direction[c] * sum.g[c];
   }
-  // A second gradient a little along the direction gives the curvature.
+  // A second gradient a small step along the direction gives the curvature.
   const std::vector<PatchSum<Dim>> kept = w.sums;
   const bool good = this->evaluate(w, probe, false);
   const PatchSum<Dim> there = good ? this->combined(w) : PatchSum<Dim>{};
@@ -402,8 +403,9 @@ double VertexOptimizer<Dim>::conjugate(PatchWorker<Dim>& w, const PatchSum<Dim>&
 }
 
 //------------------------------------------------------------------------------
-/// Halves the step t until the objective falls enough; `to` is then the displacement reached.
-/// @param alongLimit whether the vertex is taken back to its limit
+/// Halves the step t until the objective decreases sufficiently; `to` is then the resulting
+/// displacement.
+/// @param alongLimit whether the vertex is moved back to its limit
 template <int Dim>
 bool VertexOptimizer<Dim>::search(const Scalarizer& scalarizer, PatchWorker<Dim>& w,
   const double* d, const double* direction, double t, double slope, bool alongLimit, double* to)
@@ -429,7 +431,7 @@ bool VertexOptimizer<Dim>::search(const Scalarizer& scalarizer, PatchWorker<Dim>
 }
 
 //------------------------------------------------------------------------------
-/// Whether the cells that were valid throughout still are when the vertex is displaced by d.
+/// Whether the fully valid cells are still valid if the vertex is displaced by d.
 template <int Dim>
 bool VertexOptimizer<Dim>::staysValidInside(const VertexPatch<Dim>& patch, const double* d) const
 {
@@ -479,7 +481,8 @@ bool VertexOptimizer<Dim>::staysValidInside(const VertexPatch<Dim>& patch, const
 }
 
 //------------------------------------------------------------------------------
-/// Moves v by d, back to the surface if it is on one; whether it moved far enough to stay awake.
+/// Moves v by d, and back to the surface if it is on one; returns whether it moved far enough to
+/// stay active.
 template <int Dim>
 bool VertexOptimizer<Dim>::placeMoved(
   std::int32_t v, const double* d, const Scalarizer& scalarizer, PatchWorker<Dim>& w)
@@ -522,7 +525,7 @@ bool VertexOptimizer<Dim>::moveVertex(
   {
     if (!this->evaluate(w, d, this->Options.newton))
     {
-      break; // beyond the barrier, which only inverted elements of the input are
+      break; // beyond the barrier, which only happens for inverted elements of the input
     }
     this->findSlopes(scalarizer, w);
     const PatchSum<Dim> sum = this->combined(w);

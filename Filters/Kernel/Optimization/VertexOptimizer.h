@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file VertexOptimizer.h
- * @brief Moves one free vertex so that the scalarized objective becomes smaller, given where the
- * others are.
- * Internal: not installed.
+ * @brief Moves one free vertex to reduce the scalarized objective with the others fixed. Internal:
+ * not installed.
  */
 #ifndef tautline_VertexOptimizer_h
 #define tautline_VertexOptimizer_h
@@ -13,14 +12,14 @@
 
 namespace tautline
 {
-/// What a thread works in.
+/// The work space of a thread.
 template <int Dim>
 struct PatchWorker
 {
   VertexPatch<Dim> patch;
   std::vector<PatchSum<Dim>> sums; ///< of each objective over the patch
-  /// Of each objective: the patch sum's change on trial, the value now, dF/d(patch sum), the change
-  /// since the sweep began.
+  /// Per objective: the trial change of the patch sum, the current value, dF/d(patch sum), and the
+  /// change since the start of the sweep.
   std::vector<double> trial, now, slopes, change;
 };
 
@@ -33,17 +32,17 @@ public:
     const std::vector<LocalTerm>& terms, const LocalOptions& options);
 
   void setPatchIterations(int count) { this->Options.patchIterations = count; }
-  /// The objectives as a sweep begins.
+  /// Sets the objectives at the start of a sweep.
   void begin(const std::vector<double>& values);
   PatchWorker<Dim> makeWorker() const;
-  /// The objectives of the beginning when their patch sums have changed by so much.
+  /// The objective at the start of the sweep after its patch sum has changed by this much.
   double objective(std::size_t i, double change) const
   {
     return this->Functions[i]->objective(this->Values[i], change);
   }
   /**
    * @brief Moves v if that reduces the objective; adds to worker.change.
-   * @param gradient2 gets the square of the gradient's norm added
+   * @param gradient2 incremented by the squared gradient norm
    * @return whether it moved farther than the culling threshold
    */
   bool moveVertex(
@@ -72,7 +71,7 @@ private:
   bool turnAlongLimit(
     const PatchWorker<Dim>& w, const PatchSum<Dim>& sum, const double* d, double* direction) const;
   void keepLimit(std::int32_t v, double* to) const;
-  /// What v slides on, or null.
+  /// The surface on which v slides, or null.
   const SurfaceProjection* surfaceOf(std::int32_t v) const
   {
     return this->Options.surfaces.empty() ? nullptr : this->Options.surfaces[v];
@@ -107,13 +106,13 @@ private:
   double* Points;
   LocalOptions Options;
   bool NeedsCells = false;
-  bool Guarded = false; ///< some objective may be without a barrier, and no element may invert
-  /// Whether elements could fold between their corners, and which are valid at first: they stay so.
+  bool Guarded = false; ///< whether an objective may lack a barrier although no element may invert
+  /// Whether elements could fold between their corners; initially valid elements stay valid.
   bool Inside = false;
   std::vector<signed char> Validities;
   VertexCells Cells;
   std::vector<std::unique_ptr<PatchFunction<Dim>>> Functions;
-  std::vector<double> Values; ///< of the objectives when the sweep began
+  std::vector<double> Values; ///< of the objectives at the start of the sweep
 };
 
 extern template class VertexOptimizer<2>;

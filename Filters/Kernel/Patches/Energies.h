@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Energies.h
- * @brief Energies f(N, D) of a simplex, N = |T|^2 and D = det T (see SimplexMesh.h): what the fast
- * optimizers minimize.
- * Internal: not installed.
+ * @brief Energies f(N, D) of a simplex, N = |T|^2 and D = det T (see SimplexMesh.h): minimized by
+ * the fast optimizers. Internal: not installed.
  */
 #ifndef tautline_Energies_h
 #define tautline_Energies_h
@@ -14,7 +13,7 @@ namespace tautline
 {
 /**
  * @brief The inverse mean ratio N / (n D^(2/n)) to the power 1 or 2; metrics that are its powers or
- * reciprocals (mean ratio, mu_2, mu_303) have the same.
+ * reciprocals (mean ratio, mu_2, mu_303) use the same energy.
  */
 template <int Dim, int Power>
 struct InverseMeanRatioEnergy
@@ -48,8 +47,8 @@ private:
 };
 
 /**
- * @brief q^2 + K q_w^2 (q / q_w)^p of the inverse mean ratio q: the square, until q comes near q_w,
- * from where on the second term leads.
+ * @brief q^2 + K q_w^2 (q / q_w)^p of the inverse mean ratio q: the square dominates until q
+ * approaches q_w, where the second term takes over.
  */
 template <int Dim>
 struct WorstRatioEnergy
@@ -99,8 +98,8 @@ private:
 
 /**
  * @brief N / chi^(2/n) with the regularized determinant chi = (D + sqrt(D^2 + eps^2)) / 2, which is
- * positive and smooth on inverted simplices, too, and becomes D as eps goes to zero. With eps = 0,
- * a barrier.
+ * positive and smooth, even on inverted simplices, and tends to D as eps goes to zero. With eps =
+ * 0, a barrier.
  *
  * J. M. Escobar et al., CMAME 192 (2003); V. Garanzha et al., ACM TOG 40 (2021).
  */
@@ -112,7 +111,7 @@ struct RegularizedShapeEnergy
   Packet value(Packet N, Packet D) const
   {
     const Packet chi = this->chi(D, this->root(D));
-    // Less than any chi that counts, and well above where powers of it overflow.
+    // Below any relevant chi, and large enough that its powers do not overflow.
     constexpr double tiny = 1e-90;
     return select(
       chi > tiny, N * inversePower(chi), broadcast(std::numeric_limits<double>::infinity()));

@@ -66,10 +66,10 @@ struct PatchPacket
 {
   Packet N0, D0, C;
   Packet S[Dim], n[Dim];
-  Packet weight; ///< of the simplex in the sum; 0 in the lanes that only fill up
+  Packet weight; ///< of the simplex in the sum; 0 in padding lanes
 };
 
-/// A patch: what a thread works in.
+/// A patch: the work space of a thread.
 template <int Dim>
 struct Patch
 {
@@ -77,7 +77,8 @@ struct Patch
   int count = 0;
 };
 
-/// The sum of an energy over a patch with its gradient and Hessian by the displacement.
+/// The sum of an energy over a patch with its gradient and Hessian with respect to the
+/// displacement.
 template <int Dim>
 struct PatchSum
 {
@@ -86,7 +87,7 @@ struct PatchSum
   double H[Dim][Dim];
 };
 
-/// By halves: the same order on every run, and few instructions.
+/// Sum by halves: the same order in every run, and few instructions.
 inline double sumOf(Packet x)
 {
 #if defined(__AVX512F__)
@@ -112,7 +113,7 @@ inline double minOf(Packet x)
   return smallest;
 }
 
-/// A length of the patch's size: of its first simplex that counts, some edge lengths.
+/// A length scale of the patch: from edge lengths of its first simplex with nonzero weight.
 template <int Dim>
 double sizeOf(const Patch<Dim>& patch)
 {
@@ -130,7 +131,7 @@ double sizeOf(const Patch<Dim>& patch)
   return 0.0;
 }
 
-/// N and D of a packet's simplices at the displacement d.
+/// N and D of the simplices of a packet at the displacement d.
 template <int Dim>
 void invariants(const PatchPacket<Dim>& p, const double* d, Packet& N, Packet& D)
 {
@@ -147,8 +148,8 @@ void invariants(const PatchPacket<Dim>& p, const double* d, Packet& N, Packet& D
 }
 
 /**
- * @brief Whether the simplices that are valid at `from` are so at `to` with room to spare. Where an
- * objective has no barrier, steps that each stop short of inversion would end there.
+ * @brief Whether the simplices that are valid at `from` are valid at `to` with a margin. Without a
+ * barrier, steps that each stop just before inversion would accumulate there.
  */
 template <int Dim>
 bool staysValid(const Patch<Dim>& patch, const double* from, const double* to)
@@ -160,7 +161,7 @@ bool staysValid(const Patch<Dim>& patch, const double* from, const double* to)
     Packet N0, D0, N, D;
     invariants(patch.packets[i], from, N0, D0);
     invariants(patch.packets[i], to, N, D);
-    // Those that have less from the start may not lose more.
+    // Simplices that start below the margin may not get worse.
     const Mask lost = (D0 > 0.0) & ~(D > room * size(N)) & ~(D * size(N0) >= D0 * size(N));
     if (any(lost & (patch.packets[i].C > 0.0)))
     {
@@ -176,7 +177,7 @@ template <int Dim>
 void loadTargets(
   const SimplexMesh& mesh, std::int32_t first, int lanes, Packet* at, Packet* across, Packet& det)
 {
-  // Places in TargetSimplex::edge for each vertex in front: at a b c, across ab bc ca.
+  // Indices into TargetSimplex::edge for each vertex in front: at a b c, across ab bc ca.
   static constexpr int places3[4][6] = { { 0, 1, 2, 3, 5, 4 }, { 0, 4, 3, 2, 5, 1 },
     { 5, 1, 3, 2, 0, 4 }, { 5, 4, 2, 3, 0, 1 } };
   static constexpr int places2[3][3] = { { 0, 1, 2 }, { 2, 0, 1 }, { 1, 2, 0 } };
@@ -197,8 +198,8 @@ void loadTargets(
   }
 }
 
-/// The edges from v to the other vertices of a packet's simplices; in the plane of the tangents, if
-/// there are any. @param inSpace whether those of triangles have three coordinates
+/// The edges from v to the other vertices of the simplices of a packet; in the plane of the
+/// tangents, if there are any. @param inSpace whether tangents of triangles have three coordinates
 template <int Dim>
 void loadEdges(const double* x, const double* center, const std::int32_t* ids, const Vec3* tangents,
   Packet (&e)[Dim][3], bool inSpace = false)
@@ -221,7 +222,7 @@ void loadEdges(const double* x, const double* center, const std::int32_t* ids, c
   }
 }
 
-/// Edges of triangles, each turned about a line through v into one plane, as on a curve where
+/// Edges of triangles, each rotated about a line through v into one plane, as on a curve where
 /// patches meet at an angle; the line is the first axis. @param tangent of unit length
 inline void unfoldEdges(const Vec3& tangent, Packet (&e)[2][3])
 {
@@ -242,7 +243,7 @@ inline void unfoldEdges(const Vec3& tangent, Packet (&e)[2][3])
   cross3(n, t, y);
   cross3(y, n, x);
   const Packet xx = along(x, x), yy = along(y, y);
-  // A triangle without area, or at a right angle to the line, has no sides of the line.
+  // A triangle without area, or perpendicular to the line, has no side relative to the line.
   const Mask there = (xx > 0.0) & (yy > 0.0);
   const Packet ofX = select(there, 1.0 / sqrt(select(there, xx, broadcast(1.0))), Packet{}),
                ofY = select(there, 1.0 / sqrt(select(there, yy, broadcast(1.0))), Packet{});
@@ -255,7 +256,7 @@ inline void unfoldEdges(const Vec3& tangent, Packet (&e)[2][3])
 }
 
 /**
- * @brief Sets the coefficients of N(d) and D(d) of a packet's simplices.
+ * @brief Sets the coefficients of N(d) and D(d) for the simplices of a packet.
  * @param at, across the coefficients of the edges e at v and of the others
  */
 template <int Dim>
@@ -302,7 +303,7 @@ void setCoefficients(const Packet (&e)[Dim][3], const Packet (&at)[Dim], const P
   }
 }
 
-/// Gives simplices of weight 0 the invariants of an ideal one that does not move.
+/// Gives simplices of weight 0 the invariants of a fixed ideal simplex.
 template <int Dim>
 void clearWeightless(PatchPacket<Dim>& p)
 {
@@ -319,9 +320,9 @@ void clearWeightless(PatchPacket<Dim>& p)
 
 /**
  * @brief Builds the patch of v from the coordinates x.
- * @param simplexWeights per simplex, or null; simplices of weight 0 are as if they were not there
- * @param tangents of a surface at v: the patch is projected to their plane; else null
- * @param unfold the triangles are not projected but unfolded along the first tangent
+ * @param simplexWeights per simplex, or null; simplices of weight 0 are ignored
+ * @param tangents of a surface at v: the patch is projected onto their plane; otherwise null
+ * @param unfold whether the triangles are unfolded along the first tangent instead of projected
  */
 template <int Dim>
 void gatherPatch(const SimplexMesh& mesh, const double* x, std::int32_t v,
@@ -346,7 +347,7 @@ void gatherPatch(const SimplexMesh& mesh, const double* x, std::int32_t v,
     p.weight = broadcast(1.0);
     if (lanes < PacketWidth)
     {
-      // The last lanes repeat a simplex with no weight.
+      // The last lanes repeat a simplex with zero weight.
       for (int l = 0; l < PacketWidth; ++l)
       {
         for (int k = 0; k < Dim; ++k)
@@ -417,7 +418,7 @@ PatchSum<Dim> sumOver(const Patch<Dim>& patch, const double* d, const Energy& en
                  fND = p.weight * e.fND, fDD = p.weight * e.fDD;
     f += p.weight * e.f;
     diagonal += 2.0 * fN * p.C;
-    Packet a[Dim], u[Dim], w[Dim]; // a is the gradient of N, -n that of D
+    Packet a[Dim], u[Dim], w[Dim]; // a is the gradient of N, -n the gradient of D
     for (int c = 0; c < Dim; ++c)
     {
       a[c] = 2.0 * (p.C * d[c] - p.S[c]);
@@ -480,7 +481,7 @@ double stepToInversion(const Patch<Dim>& patch, const double* d, const double* s
   return minOf(smallest);
 }
 
-/// The Newton direction -H^-1 g, with H made positive definite where it is not.
+/// The Newton direction -H^-1 g, with H made positive definite if it is not.
 template <int Dim>
 void newtonDirection(const PatchSum<Dim>& sum, double* s)
 {

@@ -60,14 +60,14 @@ bool isFinite(const MeshView& view, Index point)
     std::isfinite(view.points[3 * point + 2]);
 }
 
-/// A pair of blocks that share a cell, which sorts by the later one.
+/// A pair of blocks that share a cell, sorted by the later one.
 std::uint64_t blockPair(std::int32_t a, std::int32_t b)
 {
   return static_cast<std::uint64_t>(std::max(a, b)) << 32 |
     static_cast<std::uint64_t>(std::min(a, b));
 }
 
-/// Recognizes most pairs that come again within a chunk, where neighbours follow each other.
+/// Recognizes most repeated pairs within a chunk, where neighbors are consecutive.
 class RecentPairs
 {
 public:
@@ -82,8 +82,8 @@ public:
   }
 
 private:
-  /// A pair's later block is never the first one: 0 is no pair.
-  static constexpr std::size_t most = 256; ///< small beside a chunk, and a power of two
+  /// The later block of a pair is never block 0, so 0 means no pair.
+  static constexpr std::size_t most = 256; ///< small compared with a chunk, and a power of two
   std::array<std::uint64_t, most> Places = {};
 };
 
@@ -92,7 +92,7 @@ constexpr int toFront3[4][4] = { { 0, 1, 2, 3 }, { 1, 0, 3, 2 }, { 2, 3, 0, 1 },
 constexpr int toFront2[3][3] = { { 0, 1, 2 }, { 1, 2, 0 }, { 2, 0, 1 } };
 
 /// The points that may move: see the constructor of SimplexMesh.
-/// @param corners one flag per point: of a cell of the mesh's dimension
+/// @param corners one flag per point: nonzero if it belongs to a cell of the mesh dimension
 std::vector<char> freePoints(
   const Mesh& mesh, const unsigned char* fixed, const std::vector<char>& corners, int threads)
 {
@@ -120,7 +120,7 @@ std::vector<char> freePoints(
   }
   if (elements < view.numberOfCells || mesh.higherOrderCells() > 0)
   {
-    // Points of other cells, and the nodes of quadratic cells beyond the corners, stay.
+    // Points of other cells, and nodes of quadratic cells other than corners, are fixed.
     for (Index cell = 0; cell < view.numberOfCells; ++cell)
     {
       const CellType type = cornerType(view.cellTypes[cell]);
@@ -206,6 +206,7 @@ void SimplexMesh::number(const Mesh& mesh, const std::vector<char>& corners,
   }
   low = frame ? frame->low : low;
   high = frame ? frame->high : high;
+  // The grid of the Morton curve: 16 bits per axis.
   constexpr double cells = 65535.0;
   double extent = 0;
   for (int c = 0; c < 3; ++c)
@@ -215,7 +216,7 @@ void SimplexMesh::number(const Mesh& mesh, const std::vector<char>& corners,
   }
   const double perLength = extent > 0 && std::isfinite(extent) ? cells / extent : 0.0;
 
-  // Free vertices before the others, each along a Morton curve.
+  // Free vertices come first, each group along a Morton curve.
   std::vector<std::pair<std::uint64_t, std::int32_t>> order(numberOfFree),
     rest(count - numberOfFree);
   Index nextFree = 0, nextFixed = 0;
@@ -262,6 +263,8 @@ void SimplexMesh::findPatchesOf(int threads)
 {
   constexpr int corners = Dim + 1;
   const auto cornersOf = [this](Index simplex) { return this->Corners.data() + corners * simplex; };
+  // The patches of the free vertices by a counting sort: count the simplices of each vertex, then
+  // place them.
   CountingSort entries(this->Simplices, this->Free, threads,
     [&](Index simplex, const auto& use)
     {
@@ -326,7 +329,8 @@ void SimplexMesh::indexPatches()
 }
 
 //------------------------------------------------------------------------------
-/// Those with vertices that are opposite in a hexahedron, which no simplex of it has both of.
+/// The pairs with vertices that are opposite in a hexahedron, which no simplex of it contains
+/// together.
 std::vector<std::uint64_t> SimplexMesh::blocksAcross(
   const Mesh& mesh, const std::vector<std::int32_t>& vertexOf) const
 {
@@ -356,7 +360,7 @@ std::vector<std::uint64_t> SimplexMesh::blocksAcross(
 }
 
 //------------------------------------------------------------------------------
-/// Those with vertices of one simplex, chunk by chunk.
+/// The pairs with vertices of one simplex, chunk by chunk.
 template <int Dim>
 std::vector<std::vector<std::uint64_t>> SimplexMesh::blocksOfSimplices(int threads) const
 {
@@ -414,7 +418,7 @@ void SimplexMesh::findBlocks(
   std::sort(pairs.begin(), pairs.end());
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
 
-  // Each block gets the first colour that no earlier block has with which it shares a cell.
+  // Each block gets the first color that no earlier block sharing a cell has.
   auto pair = pairs.begin();
   std::vector<std::int32_t> colour(blocks, -1);
   std::vector<char> taken;
@@ -477,7 +481,7 @@ void SimplexMesh::load(const double* points, int threads)
 void SimplexMesh::storeVertex(const double* x, double* p) const
 {
   Vec3 d = this->Scale * (x[0] * this->Frame[0] + x[1] * this->Frame[1]);
-  // What a planar mesh's point has beside the plane (rounding) is kept.
+  // Keep the offset of a point from the plane of a planar mesh (rounding).
   const bool planar = this->Dim == 2 && !this->Surface;
   const double height =
     planar ? dot(Vec3{ p[0], p[1], p[2] } - this->Shift, this->Frame[2]) : this->Scale * x[2];

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SimplexMesh.h
- * @brief A mesh made ready for optimization: the simplices at the corners of its cells, renumbered
- * for the cache, with the patch of simplices around each free vertex.
- * Internal: not installed.
+ * @brief A mesh prepared for optimization: the simplices at the corners of its cells, renumbered
+ * for the cache, with the patch of simplices around each free vertex. Internal: not installed.
  *
  * With T = A W^-1 of a simplex, N = |T|^2 is the sum of c_kl |x_k - x_l|^2 over its edges, and D =
- * det T a multiple of its volume. In one of its vertices N is quadratic (with a multiple of the
- * unit matrix as Hessian) and D is linear. All fast objectives are functions of N and D.
+ * det T a multiple of its volume. As a function of one vertex, N is quadratic (with a multiple of
+ * the unit matrix as Hessian) and D is linear. All fast objectives are functions of N and D.
  */
 #ifndef tautline_SimplexMesh_h
 #define tautline_SimplexMesh_h
@@ -21,35 +20,37 @@
 
 namespace tautline
 {
-/// Coordinates are kept in fours, the last unused, so that a vertex is one aligned load.
+/// Coordinates are stored in groups of four, the last unused, so that a vertex is one aligned load.
 constexpr int VertexStride = 4;
 
 /// The target of a simplex: N = sum edge[e] |edge e|^2, D = det * (d! volume).
 struct TargetSimplex
 {
-  /// 01 02 12 in 2D, 01 02 03 12 13 23 in 3D; -w_k . w_l with w_k the rows of W^-1, w_0 = -sum.
+  /// 01 02 12 in 2D, 01 02 03 12 13 23 in 3D; -w_k . w_l, where w_k are the rows of W^-1, w_0 =
+  /// -sum.
   double edge[6] = { 0, 0, 0, 0, 0, 0 };
   double det = 1; ///< of W^-1
 };
 
-/// Blocks of consecutive free vertices. No two of one colour share a cell, since most metrics read
-/// all points of the cells at a vertex: those of one colour can move at the same time.
+/// Blocks of consecutive free vertices. No two blocks of one color share a cell, because most
+/// metrics read all points of the cells at a vertex: blocks of one color can move concurrently.
 struct VertexBlocks
 {
   static constexpr std::int32_t size = 256; ///< block b has the vertices from b * size on
-  std::vector<std::int32_t> byColour;       ///< the blocks, colour by colour
+  std::vector<std::int32_t> byColour;       ///< the blocks, color by color
   std::vector<std::int32_t> colourStarts;   ///< into byColour, and its end
 };
 
-/// What the coordinates and the order of the vertices follow from, the same for all parts of a mesh
-/// that is spread over ranks.
+/// The data that determine the coordinates and the order of the vertices; the same for all parts of
+/// a distributed mesh.
 struct SimplexFrame
 {
   Vec3 low = { 0, 0, 0 }, high = { 0, 0, 0 }; ///< bounds of the whole mesh
   double scale = 1;                           ///< a power of two near the mean edge
 };
 
-/// The power of two next to a length, so that scaling does not round; 1 if it is not a length.
+/// The power of two nearest to a length, so that scaling does not round; 1 if it is not a valid
+/// length.
 double powerOfTwo(double length);
 
 class TAUTLINE_KERNEL_EXPORT SimplexMesh
@@ -57,12 +58,12 @@ class TAUTLINE_KERNEL_EXPORT SimplexMesh
 public:
   /**
    * @param fixed one flag per point, or null for the boundary
-   * @param targets or null for the ideal cells with edges as long as scale(); metric roots are left
-   * out
+   * @param targets or null for the ideal cells with edges of length scale(); metric roots are
+   * ignored
    *
-   * Vertices of cells that are no elements (lines, polygons, cells of another dimension) and
-   * non-finite points are fixed, too; simplices with non-finite points are left out.
-   * @param frame of the whole mesh, if this is a part of one; null: from the mesh
+   * Vertices of cells that are not elements (lines, polygons, cells of another dimension) and
+   * nonfinite points are also fixed; simplices with nonfinite points are left out.
+   * @param frame of the whole mesh, if this is a part; null: from the mesh
    */
   SimplexMesh(const Mesh& mesh, const unsigned char* fixed, const Targets* targets, int threads,
     const SimplexFrame* frame = nullptr);
@@ -84,13 +85,14 @@ public:
 
   /// dimension() + 1 vertices per simplex, positively oriented where the element is valid.
   const std::int32_t* corners() const { return this->Corners.data(); }
-  /// The cell a simplex is a corner of.
+  /// The cell of which a simplex is a corner.
   Index cell(std::int32_t simplex) const
   {
     return this->Cell.empty() ? simplex : this->Cell[simplex];
   }
 
-  /// One target for all simplices, in the coordinates of the mesh's scale; else see target().
+  /// Whether there is one target for all simplices, in the scaled coordinates; otherwise see
+  /// target().
   bool uniform() const { return this->Shape.empty(); }
   const TargetSimplex& target(std::int32_t simplex) const
   {
@@ -110,13 +112,13 @@ public:
 
   /// Sets the coordinates from 3 per point.
   void load(const double* points, int threads);
-  /// What one of these coordinates' units is in the mesh's: scale() times a unit vector.
+  /// The unit vector of one of these coordinates in mesh coordinates, times scale().
   Vec3 axis(int c) const { return this->Scale * this->Frame[c]; }
   /// A point of the mesh in these coordinates.
   Vec3 transform(const Vec3& point) const;
-  /// Writes one vertex into 3 coordinates, which had the point before.
+  /// Writes one vertex into 3 coordinates, which contain the previous point.
   void storeVertex(const double* x, double* p) const;
-  /// Writes the free vertices; the other of the 3 per point stay as they are.
+  /// Writes the free vertices, 3 coordinates per point; other points stay unchanged.
   void store(double* points, int threads) const { this->store(this->X.data(), points, threads); }
   void store(const double* coordinates, double* points, int threads) const;
 

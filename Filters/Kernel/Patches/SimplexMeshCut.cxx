@@ -43,7 +43,7 @@ TargetSimplex targetFrom(const double* inverse, int dimension, double scale)
   return target;
 }
 
-/// The target of the simplex whose first two vertices are exchanged, as in a mirror.
+/// The target of the mirrored simplex, with its first two vertices exchanged.
 void swapFirstTwo(TargetSimplex& shape, int dimension)
 {
   std::swap(shape.edge[1], shape.edge[dimension == 3 ? 3 : 2]);
@@ -78,17 +78,17 @@ public:
     this->AllFinite = mesh.nonFinitePoints() == 0;
   }
 
-  /// Of cells of the dimension.
+  /// The number of cells of the dimension.
   Index cells() const { return this->Cells; }
-  /// At most: with those of points that are not finite.
+  /// An upper bound, including simplices with nonfinite points.
   Index simplices() const { return this->Simplices; }
 
   /// Whether all cells are simplices, of one block and of finite points: one simplex per cell.
   bool isPlain() const { return this->AllSimplices && this->AllFinite; }
 
-  /// Of a plain cell, by its place.
+  /// The cell at a position, for plain cells.
   Index cellAt(Index place) const { return this->Parts.front().block->cell(place); }
-  /// Of a cell of the dimension.
+  /// The topology of a cell of the dimension.
   const CellTopology& topologyOf(Index cell) const
   {
     return this->Parts.size() == 1
@@ -96,8 +96,8 @@ public:
       : *this->OfType[topologyIndex(cornerType(this->View.cellTypes[cell]))];
   }
 
-  /// Calls visit(cell, corner, vertices) for each simplex of finite points of a cell, by its place
-  /// among those of the dimension.
+  /// Calls visit(cell, corner, vertices) for each simplex with finite points of a cell, given by
+  /// its position among the cells of the dimension.
   template <class Visit>
   void visit(Index place, const Visit& visit) const
   {
@@ -146,14 +146,15 @@ public:
     return finite;
   }
 
-  /// Of the first edge of each 16th simplex, which is enough for a scale; 1 if there is none.
+  /// The mean length of the first edge of every 16th simplex, which suffices for a scale; 1 if
+  /// there is none.
   double meanLength(const std::vector<std::int32_t>& points, int threads) const
   {
     constexpr Index every = 16;
     Lengths lengths = this->firstEdges(every, points, threads);
     if (lengths.count == 0)
     {
-      lengths = this->firstEdges(1, points, threads); // those have points that are not finite
+      lengths = this->firstEdges(1, points, threads); // the sampled ones have nonfinite points
     }
     return lengths.count > 0 ? lengths.sum / static_cast<double>(lengths.count) : 1.0;
   }
@@ -171,7 +172,7 @@ private:
     Index count = 0;
   };
 
-  /// Of the simplices of finite points among each `every`-th.
+  /// The first edges of the simplices with finite points among every `every`-th one.
   Lengths firstEdges(Index every, const std::vector<std::int32_t>& points, int threads) const
   {
     const Index samples = (this->Simplices + every - 1) / every;
@@ -193,8 +194,7 @@ private:
     return all;
   }
 
-  /// Adds the length of the first edge of a simplex, by its place; not of one with points that are
-  /// not finite.
+  /// Adds the length of the first edge of a simplex at a position, unless it has nonfinite points.
   void addFirstEdge(Index place, const std::vector<std::int32_t>& points, Lengths& lengths) const
   {
     auto part = this->Parts.begin();
@@ -219,10 +219,10 @@ private:
   std::array<const CellTopology*, NumberOfCellTypes> OfType = {};
   Index Cells = 0, Simplices = 0;
   bool AllSimplices = false; ///< all cells are simplices of one block
-  bool AllFinite = false;    ///< all points are
+  bool AllFinite = false;    ///< whether all points are finite
 };
 
-/// The targets of the corners of the ideal cells, and where those of each type begin.
+/// The targets of the corners of the ideal cells, with the offsets of each type.
 std::vector<TargetSimplex> idealShapes(
   const Mesh& mesh, int dimension, std::vector<int>& firstShape)
 {
@@ -269,10 +269,10 @@ void SimplexMesh::cutInto(const Mesh& mesh, const std::vector<std::int32_t>& ver
   if (source.simplices() > std::numeric_limits<std::int32_t>::max() / corners)
   {
     throw Error(
-      "The mesh has more elements than the optimizers take (about 500 million): split it.");
+      "The mesh has more elements than the optimizers support (about 500 million): split it.");
   }
-  // Sorted by their first vertex in the new numbering: each goes to the next place of that. The
-  // vertices of plain cells are kept: they tell early where a cell will go.
+  // Sort by the first vertex in the new numbering: each simplex goes to the next position of this
+  // vertex. The vertices of plain cells are kept so that the position of a cell is known early.
   LargeArray<std::int32_t> kept(source.isPlain() ? corners * source.cells() : 0);
   CountingSort places(source.cells(), this->vertices(), threads,
     [&](Index cell, const auto& use)
@@ -304,8 +304,8 @@ void SimplexMesh::cutInto(const Mesh& mesh, const std::vector<std::int32_t>& ver
   this->Cell.resize(this->Simplices);
   this->Corners.resize(static_cast<std::size_t>(corners) * this->Simplices);
   this->Shape.resize(several ? this->Simplices : 0);
-  // Cells are read in their order and written to their places: the processor need not wait for a
-  // write as it would for a read.
+  // Cells are read in order and written to their final positions, because the processor waits for
+  // reads but not for writes.
   const auto put = [&](Index cell, int s, const std::int32_t* v, std::int32_t place)
   {
     this->Cell[place] = static_cast<std::int32_t>(cell);

@@ -8,7 +8,7 @@ namespace tautline
 {
 namespace
 {
-/// A boundary vertex this near to a bond, in the lengths of bond and edge, is on it.
+/// A boundary vertex this close to a bond, relative to the lengths of bond and edge, is on it.
 constexpr double Touching = 1e-12;
 
 Vec2 centroid(const PlanarTriangles& triangles, Index t)
@@ -31,11 +31,11 @@ bool shareVertex(const PlanarTriangles& triangles, Index t, Index other)
   return false;
 }
 
-/// The points of two triangles that are nearest to each other; the triangles are disjoint.
+/// The closest points of two disjoint triangles.
 double nearestPoints(
   const PlanarTriangles& triangles, Index t, Index other, Vec2& nearestOfT, Vec2& nearestOfOther)
 {
-  double nearest = 1e300; // of the squares
+  double nearest = 1e300; // of the squared distances
   const auto toSegment = [&](Vec2 p, Vec2 a, Vec2 b, Vec2& ofPoint, Vec2& ofSegment)
   {
     const Vec2 e = b - a;
@@ -70,7 +70,7 @@ BondCut::BondCut(const PlanarTriangles& triangles, double horizon, bool cut)
   {
     return;
   }
-  // Edges that one triangle has, sorted by their vertices.
+  // Edges of exactly one triangle, sorted by their vertices.
   std::vector<std::array<std::int32_t, 2>> edges;
   for (const auto& triangle : triangles.triangles)
   {
@@ -93,7 +93,7 @@ BondCut::BondCut(const PlanarTriangles& triangles, double horizon, bool cut)
       Vec2 p = triangles.points[edges[i][0]], q = triangles.points[edges[i][1]];
       if (q < p)
       {
-        std::swap(p, q); // the same arithmetic in every order of the points
+        std::swap(p, q); // the same arithmetic for any order of the points
       }
       this->Edges.push_back({ p, q });
       this->Low.push_back({ std::min(p[0], q[0]), std::min(p[1], q[1]) });
@@ -116,8 +116,8 @@ bool BondCut::isCut(Index t, Index other, const std::vector<std::int32_t>& edges
   const double apart = std::sqrt(dot(b - a, b - a));
   if (apart >= this->Horizon)
   {
-    // From the nearest points as far towards the centroids as the horizon allows: distances are
-    // convex along the way.
+    // Move from the closest points toward the centroids as far as the horizon allows: the distance
+    // is convex along this path.
     Vec2 p = a, q = b;
     const double nearest = nearestPoints(this->Triangles, first, second, p, q);
     if (nearest >= this->Horizon)

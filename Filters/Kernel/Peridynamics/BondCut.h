@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BondCut.h
- * @brief Which triangles interact where the mesh has holes, cracks or a boundary that is not
- * convex.
+ * @brief Determines which triangles interact if the mesh has holes, cracks or a nonconvex boundary.
  * Internal: not installed.
  *
- * A bond, the segment between two points that interact, is cut if it leaves the mesh: material on
- * both sides of a hole does not interact across it. That is decided for pairs of triangles as a
- * whole, by the segment between their centroids, so that the form stays symmetric; where that is
- * longer than the horizon, between points of the triangles that are nearer to each other. What one
- * triangle sees of another only in part is an error of the order of the element size. Triangles
- * that share a vertex always interact. With an interaction layer of the width of the reach nothing
- * is cut, as every bond of the domain is in the mesh.
+ * A bond, the segment between two interacting points, is cut if it leaves the mesh: material on
+ * both sides of a hole does not interact across it. This is decided for whole pairs of triangles by
+ * the segment between their centroids, so that the form stays symmetric; if that segment is longer
+ * than the horizon, closer points of the triangles are used. Partial visibility between triangles
+ * causes an error of the order of the element size. Triangles that share a vertex always interact.
+ * With an interaction layer as wide as the reach, nothing is cut, because every bond of the domain
+ * is inside the mesh.
  *
  * Source: S. A. Silling, E. Askari, Computers & Structures 83 (2005) 1526-1535 (broken bonds);
  * T. Belytschko, Y. Krongauz, D. Organ, M. Fleming, P. Krysl, Comput. Methods Appl. Mech. Eng. 139
@@ -26,11 +25,11 @@
 
 namespace tautline
 {
-/// The boundary of a mesh, and which triangles see each other in spite of it.
+/// The boundary of a mesh, and the mutual visibility of triangles.
 class BondCut
 {
 public:
-  /// @param cut false: all triangles see each other
+  /// @param cut false: all triangles are mutually visible
   BondCut(const PlanarTriangles& triangles, double horizon, bool cut);
   /// Removes from `near` the triangles that triangle t does not interact with.
   void keepVisible(Index t, std::vector<std::int32_t>& near) const;

@@ -17,7 +17,7 @@ constexpr int RulePoints = 7;
 constexpr double Orbits[2] = { 0.10128650732345634, 0.47014206410511509 };
 constexpr double Weights[3] = { 0.225, 0.12593918054482715, 0.13239415278850619 };
 
-/// Triangles whose rows are kept at a time.
+/// The number of triangles whose rows are kept at a time.
 constexpr Index BatchSize = 256;
 
 using Barycentric = std::array<double, 3>;
@@ -59,7 +59,7 @@ struct LinearFunctions
       this->gradients[k] = (0.5 / triangles.areas[t]) * Vec2{ -e[1], e[0] };
     }
   }
-  /// Relative to the corner opposite, so that it is exact where the function vanishes.
+  /// Relative to an opposite corner, so that it is exact where the function vanishes.
   double value(int k, Vec2 x) const
   {
     return dot(this->gradients[k], x - this->corners[(k + 1) % 3]);
@@ -84,7 +84,7 @@ struct DilatationMoments
   }
 };
 
-/// 2 / m of the whole disc.
+/// 2 / m for the whole disk.
 double dilatationFactor(const PeridynamicOptions& options)
 {
   const RadialKernel kernel(options.kernel, options.horizon);
@@ -100,13 +100,13 @@ struct DilatationRow
   double weight = 0.0;      ///< of the point in the integral
 };
 
-/// Makes the rows of one triangle's points.
+/// Computes the rows of the points of one triangle.
 class DilatationRows
 {
 public:
   explicit DilatationRows(const PeridynamicWork& work)
     : Work(work)
-    , Integrator(work.options, 3) // for the moments of all degrees
+    , Integrator(work.options, 3) // provides the moments of all degrees
     , Factor(dilatationFactor(work.options))
     , Sums(work.space.functions, Vec2{})
     , Marked(work.space.functions, 0)
@@ -165,8 +165,8 @@ private:
       }
       for (int k = 0; k < 3; ++k)
       {
-        // phi(y) - phi(x), phi continued from the triangle of y; nothing but the gradient in the
-        // point's own triangle.
+        // phi(y) - phi(x), with phi extended from the triangle of y; within the triangle of the
+        // point, only the gradient contributes.
         const Vec2 change = moments.times(linear.gradients[k]);
         const Index f = space.function(triangles, other, k);
         if (other == t)
@@ -197,7 +197,7 @@ private:
   std::vector<std::int32_t> Touched, Near;
 };
 
-/// Triangles whose dilatation depends on an unknown function.
+/// The triangles whose dilatation depends on an unknown function.
 std::vector<std::int32_t> trianglesWithDilatation(const PeridynamicWork& work)
 {
   const std::vector<char> unknown = work.space.trianglesWithUnknowns(work.triangles);
@@ -224,7 +224,7 @@ std::vector<std::int32_t> trianglesWithDilatation(const PeridynamicWork& work)
   return found;
 }
 
-/// Where a function is in the rows of a batch: its row, and its place there.
+/// The location of a function in the rows of a batch: its row, and its position there.
 struct Occurrence
 {
   std::int32_t row, place;
@@ -260,7 +260,7 @@ public:
     }
   }
 
-  /// Adds to the two matrix rows of an unknown function; `places` is a number per function.
+  /// Adds to the two matrix rows of an unknown function; `places` has one number per function.
   void addTo(Index u, double factor, const std::vector<double>* given, std::vector<Index>& places,
     PeridynamicSystem& system) const
   {
@@ -319,7 +319,7 @@ void addDilatation(const PeridynamicWork& work, const std::vector<double>* given
   ScratchPool<std::vector<Index>> places(
     [&] { return std::vector<Index>(work.space.functions, 0); });
   std::vector<std::vector<DilatationRow>> batch;
-  // Within a batch each matrix row has one writer, and the rows of the points a fixed order.
+  // Within a batch, each matrix row has one writer, and the rows of the points have a fixed order.
   for (Index begin = 0; begin < count; begin += BatchSize)
   {
     batch.resize(std::min(BatchSize, count - begin));
@@ -373,7 +373,7 @@ public:
       }
       if (other == t)
       {
-        std::fill(m, m + FourthDegree, 0.0); // need not exist, and the jump is 0
+        std::fill(m, m + FourthDegree, 0.0); // may not exist, and the jump is 0
       }
       const Vec2 jump = this->motion(other, x, g) - own;
       const DilatationMoments moments(m);
@@ -390,9 +390,9 @@ public:
   }
 
 private:
-  static constexpr int FourthDegree = 10; ///< the first moment of it
+  static constexpr int FourthDegree = 10; ///< index of the first moment of degree 4
 
-  /// The motion of a triangle continued to x, and the gradients of its components.
+  /// The motion of a triangle extended to x, and the gradients of its components.
   Vec2 motion(Index t, Vec2 x, Vec2* gradients) const
   {
     const FunctionSpace& space = this->Work.space;
@@ -426,7 +426,7 @@ PeridynamicStrain peridynamicStrain(
 {
   if (!isElastic(options.model))
   {
-    throw Error("strains are of the elastic models: choose one of them");
+    throw Error("strains are only defined for elastic models: choose one of them");
   }
   PlanarTriangles triangles(mesh);
   triangles.sortByPlace();

@@ -17,8 +17,7 @@ FunctionSpace::FunctionSpace(
     for (int k = 0; k < this->perTriangle(); ++k)
     {
       const Index f = this->function(triangles, t, k);
-      // A vertex of any interaction layer triangle is given: those on the boundary of the domain
-      // are not unknown.
+      // A vertex of any interaction layer triangle is given, including the boundary of the domain.
       const bool byPoint = this->basis == PeridynamicBasis::Linear && !mesh.givenPoints.empty();
       const bool fixed = options.constrained &&
         (byPoint ? mesh.givenPoints[f] != 0 : mesh.layer[triangles.source(t)] != 0);
@@ -43,9 +42,8 @@ FunctionSpace::FunctionSpace(
   }
   if (this->unknowns == 0)
   {
-    throw Error("there is no unknown: every function belongs to the interaction layer. The domain "
-                "has to be larger, or "
-                "the elements smaller");
+    throw Error("there is no unknown: every function belongs to the interaction layer. Use a "
+                "larger domain or smaller elements");
   }
 }
 

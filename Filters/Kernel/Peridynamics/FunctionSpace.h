@@ -12,7 +12,7 @@
 
 namespace tautline
 {
-/// The functions of a basis: which are unknown, and the boxes around their supports.
+/// The functions of a basis: the unknown ones, and the boxes around their supports.
 struct FunctionSpace
 {
   PeridynamicBasis basis;

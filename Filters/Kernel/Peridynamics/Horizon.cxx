@@ -11,7 +11,8 @@ namespace tautline
 {
 namespace
 {
-/// Where the segment from a (inside) to b (outside) leaves the circle, as a fraction of its length.
+/// The fraction of its length at which the segment from a (inside) to b (outside) leaves the
+/// circle.
 double exitParameter(Vec2 a, Vec2 b, double radius)
 {
   const Vec2 e = b - a;
@@ -19,7 +20,8 @@ double exitParameter(Vec2 a, Vec2 b, double radius)
   return (-beta + std::sqrt(std::max(0.0, beta * beta - alpha * gamma))) / alpha;
 }
 
-/// Area between the disc around 0 and the triangle of 0 and the directed segment from a to b.
+/// The signed area of the intersection of the disk around 0 with the triangle of 0 and the directed
+/// segment from a to b.
 double sectorArea(Vec2 a, Vec2 b, double radius)
 {
   const auto arc = [&](Vec2 p, Vec2 q)
@@ -45,7 +47,7 @@ double sectorArea(Vec2 a, Vec2 b, double radius)
 //------------------------------------------------------------------------------
 double layerDeficit(const HorizonMesh& mesh, double horizon, int threads)
 {
-  // Edges by their two points: how many triangles and how many of the domain use them.
+  // Edges by their two points: the numbers of all triangles and of domain triangles that use them.
   struct Use
   {
     int all = 0, domain = 0;
@@ -136,7 +138,8 @@ HorizonMesh horizonSquare(double h, double aspectRatio, double delta, Index extr
     for (Index i = 0; i < cells[0]; ++i)
     {
       const Index a = j * (cells[0] + 1) + i, d = a + cells[0] + 1;
-      // Two triangles per rectangle; those whose centroid is outside the square are the layer.
+      // Two triangles per rectangle; triangles with their centroid outside the square form the
+      // layer.
       const Index both[2][3] = { { a, a + 1, d + 1 }, { a, d + 1, d } };
       for (const auto& t : both)
       {
@@ -186,7 +189,7 @@ DiscIntersection intersectDisc(const double* corners, double x, double y, double
   }
   else if (result.corners > 0)
   {
-    // Turned so that the odd corner is last (two inside) or first (one inside).
+    // Rotated so that the odd corner is last (two inside) or first (one inside).
     int first = 0;
     while (result.corners == 1 ? !in[first] : in[(first + 2) % 3])
     {

@@ -19,7 +19,8 @@ namespace
 {
 constexpr double MinGap = 0.55; // of lattice points from the boundary, in element sizes
 constexpr double Margin = 2.5;  // of lattice points beyond the width, in element sizes
-constexpr double Jitter = 0.02; // of lattice points, in element sizes: no four on a circle
+// of lattice points, in element sizes, so that no four are cocircular
+constexpr double Jitter = 0.02;
 constexpr double MaxPoints = 5e6;
 constexpr double BytesPerPoint = 300; // of the lattice, with its triangulation
 
@@ -57,7 +58,8 @@ struct Place
 {
   double distance = 0.0; ///< to the boundary
   bool inside = false;
-  bool crowds = false; ///< in the circle over an edge, which would then be no Delaunay edge
+  /// inside the diametral circle of an edge, which would then not be a Delaunay edge
+  bool crowds = false;
 };
 
 Place placeOf(Vec2 p, const std::vector<Edge>& edges)
@@ -125,7 +127,7 @@ std::vector<Vec2> latticePoints(
   if (!(columns * rows <= MaxPoints))
   {
     throw Error("an interaction layer of this width with elements of size " + std::to_string(size) +
-      " has too many of them: give a larger element size");
+      " has too many of them: use a larger element size");
   }
   requireMemory(
     columns * rows * BytesPerPoint, "the interaction layer", "give a larger element size");
@@ -163,12 +165,12 @@ void checkOptions(const InteractionLayerOptions& options)
   if (!(options.width > 0.0) || !std::isfinite(options.width))
   {
     throw Error("the width of the interaction layer is " + std::to_string(options.width) +
-      "; it has to be above 0");
+      "; it must be above 0");
   }
   if (!(options.elementSize >= 0.0) || !std::isfinite(options.elementSize))
   {
     throw Error("the element size of the interaction layer is " +
-      std::to_string(options.elementSize) + "; it has to be 0 or more");
+      std::to_string(options.elementSize) + "; it must be 0 or more");
   }
 }
 
@@ -183,11 +185,11 @@ double meanLength(const std::vector<Edge>& edges)
   return length;
 }
 
-/// What is triangulated: the points of the boundary, then those of the lattice.
+/// The points to triangulate: boundary points, then lattice points.
 struct LayerPoints
 {
   std::vector<double> points;  ///< x y each
-  std::vector<Index> globalOf; ///< numbers of the points in the mesh with the layer
+  std::vector<Index> globalOf; ///< global numbers of the points in the mesh with the layer
   std::vector<std::pair<Index, Index>> segments;
   Index boundaryPoints = 0;
 
@@ -219,8 +221,8 @@ struct LayerPoints
   }
   Vec2 at(Index local) const { return { this->points[2 * local], this->points[2 * local + 1] }; }
 
-  /// Whether a triangle is outside the mesh and comes nearer than the width; far from the mesh
-  /// triangles may be long.
+  /// Whether a triangle is outside the mesh and closer than the width; far from the mesh, triangles
+  /// may be long.
   bool isLayer(const std::array<Index, 3>& t, const std::vector<Edge>& edges, double width) const
   {
     Vec2 corner[3] = {}, centre = {};
@@ -243,7 +245,7 @@ struct LayerPoints
   }
 };
 
-/// Removes the points from `first` on that no triangle has.
+/// Removes unused points, starting from `first`.
 void removeUnused(LayerTriangles& layer, Index first)
 {
   constexpr Index unused = -1, used = -2;
@@ -318,7 +320,7 @@ HorizonMesh addInteractionLayer(const HorizonMesh& mesh, const InteractionLayerO
   const LayerTriangles layer = surroundByLayer(boundary, options);
   HorizonMesh result = mesh;
   const auto shared = static_cast<Index>(layer.boundary.size());
-  const Index first = result.numberOfPoints() - shared; // of new points
+  const Index first = result.numberOfPoints() - shared; // of the new points
   result.points.insert(result.points.end(), layer.points.begin() + 2 * shared, layer.points.end());
   for (const auto& t : layer.triangles)
   {

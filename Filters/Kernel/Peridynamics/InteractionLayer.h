@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file InteractionLayer.h
- * @brief Puts an interaction layer of triangles around a planar mesh, for the volume constraint of
+ * @brief Adds an interaction layer of triangles around a planar mesh, for the volume constraint of
  * nonlocal models.
  */
 #ifndef tautline_InteractionLayer_h
@@ -18,22 +18,22 @@ namespace tautline
 /// The size of the layer and of its triangles.
 struct InteractionLayerOptions
 {
-  double width = 0.2; ///< minimum width, in the unit of the mesh; above 0
+  double width = 0.2; ///< minimum width, in mesh units; above 0
   /// Edge of the triangles of the interaction layer; 0: the mean edge of the boundary.
   double elementSize = 0.0;
-  int threads = 0; ///< 0 is all cores; the result does not depend on it
-  /// Called with the fraction done, 0 to 1; the function ends with an Error when it returns false.
+  int threads = 0; ///< 0: all cores; the result does not depend on it
+  /// Called with the fraction done, 0 to 1; the function throws Error if it returns false.
   std::function<bool(double)> progress;
 };
 
 /**
  * @brief The mesh with triangles added all around it, and in its holes, up to `width` from it.
  *
- * Points and triangles of the mesh stay as they are, and come first; the interaction layer is
+ * Points and triangles of the mesh stay unchanged and come first; the interaction layer is
  * conforming: it has the edges of the boundary. Its points lie on a lattice of equilateral
- * triangles, slightly perturbed, joined with those of the boundary by a constrained Delaunay
- * triangulation. Triangles that already belong to an interaction layer stay in it, and count as
- * part of the mesh that the new layer surrounds.
+ * triangles, slightly perturbed, and are joined to the boundary points by a constrained Delaunay
+ * triangulation. Triangles that already belong to an interaction layer stay in it and are treated
+ * as part of the mesh that the new layer surrounds.
  *
  * Throws Error for a width that is not above 0, a mesh that assemblePeridynamics() rejects, a
  * boundary that crosses or touches itself, and an interaction layer of more than ten million
@@ -49,7 +49,7 @@ struct BoundaryEdge
   Index first, second; ///< point numbers
 };
 
-/// What a layer depends on of the mesh that it surrounds.
+/// The data of the surrounded mesh on which a layer depends.
 struct LayerBoundary
 {
   std::vector<BoundaryEdge> edges;
@@ -59,14 +59,14 @@ struct LayerBoundary
 /// A layer without the mesh.
 struct LayerTriangles
 {
-  std::vector<double> points;                  ///< x y each: those of the boundary, then new ones
-  std::vector<Index> boundary;                 ///< the numbers of those of the boundary
-  std::vector<std::array<Index, 3>> triangles; ///< counter-clockwise
+  std::vector<double> points;                  ///< x y each: boundary points, then new points
+  std::vector<Index> boundary;                 ///< the numbers of the boundary points
+  std::vector<std::array<Index, 3>> triangles; ///< counterclockwise
 };
 
 /**
  * @brief The triangles that addInteractionLayer() adds to a mesh with this boundary: for a mesh on
- * several ranks, none of which has the whole.
+ * several ranks, none of which has the whole mesh.
  * @param boundary the edges in the order of their triangles: other orders change the last digits
  */
 TAUTLINE_SOLVERS_EXPORT LayerTriangles surroundByLayer(

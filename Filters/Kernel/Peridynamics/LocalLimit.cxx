@@ -17,10 +17,10 @@ namespace
 constexpr Index Unused = -1;
 using Block = std::array<double, 4>; // rows and columns of two components; scalar: the first
 
-/// The neighbours of a vertex, itself included, with their entries.
+/// The neighbors of a vertex, including itself, with their entries.
 using Row = std::vector<std::pair<std::int32_t, Block>>;
 
-/// The number of each vertex among the free ones, Unused where it is given or in no triangle.
+/// The number of each vertex among the free ones, or Unused if it is given or in no triangle.
 std::vector<Index> freeVertices(
   const HorizonMesh& mesh, PeridynamicBasis basis, const PeridynamicSystem& system, Index& count)
 {
@@ -69,7 +69,7 @@ Block& entry(Row& row, Index column)
   return row.back().second;
 }
 
-/// Adds the products of the gradients of a triangle's functions.
+/// Adds the products of the gradients of the functions of a triangle.
 void addTriangle(const PlanarTriangles& triangles, Index t, const std::vector<Index>& numbers,
   bool elastic, double modulus, double ratio, std::vector<Row>& rows)
 {
@@ -135,7 +135,7 @@ SparseMatrix compressed(std::vector<Row>& rows, Index components)
   return matrix;
 }
 
-/// The values of the functions in those of the free vertices.
+/// The values of the functions in terms of the values at the free vertices.
 Prolongation fromVertices(const HorizonMesh& mesh, PeridynamicBasis basis,
   const PeridynamicSystem& system, const std::vector<Index>& numbers, Index count)
 {

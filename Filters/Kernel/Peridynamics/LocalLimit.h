@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file LocalLimit.h
- * @brief The local operator that a nonlocal one tends to as the horizon tends to 0, in linear
- * finite elements on the same triangles.
+ * @brief The local operator to which a nonlocal operator converges as the horizon tends to 0, in
+ * linear finite elements on the same triangles.
  *
- * For a smooth u, u(x) - u(y) is the gradient times x - y but for higher orders, so that a(u, u)
- * of Peridynamics.h becomes the integral of
+ * For a smooth u, u(x) - u(y) is the gradient times x - y up to higher orders, so that a(u, u) of
+ * Peridynamics.h becomes the integral of
  *
  *     s pi / 2 int_0^delta r^3 k(r) dr |grad u|^2                              (scalar)
  *     mu (2 eps:eps + (tr eps)^2),  mu = s pi / 8 int_0^delta r^5 k(r) dr      (elastic)
@@ -41,21 +41,21 @@ struct Prolongation
   Index fine() const { return static_cast<Index>(this->offsets.size()) - 1; }
 };
 
-/// The local limit, and how its functions carry over to those of the nonlocal system.
+/// The local limit, and the map from its functions to the functions of the nonlocal system.
 struct LocalLimit
 {
   /// Stiffness matrix of the linear elements at the free vertices, system.components rows each;
-  /// symmetric, positive definite where something is given.
+  /// symmetric; positive definite if values are given.
   SparseMatrix matrix;
-  /// The linear basis is itself; a constant function is the mean of its triangle's corners, one of
-  /// the discontinuous basis its corner.
+  /// The identity for the linear basis; a constant function is the mean over the corners of its
+  /// triangle, a function of the discontinuous basis is the value at its corner.
   Prolongation prolongation;
 };
 
 /**
  * @brief Assembles the local limit of a system. Vertices of triangles of the interaction layer (or
  * givenPoints, linear basis) have the value 0.
- * @param options those that the system was assembled with
+ * @param options the options with which the system was assembled
  */
 TAUTLINE_SOLVERS_EXPORT LocalLimit localLimit(
   const HorizonMesh& mesh, const PeridynamicOptions& options, const PeridynamicSystem& system);

@@ -12,7 +12,7 @@ namespace tautline
 {
 namespace
 {
-/// Eigenvalues of a mass matrix by its diagonal, linear triangles.
+/// Bounds of the eigenvalues of a mass matrix relative to its diagonal, for linear triangles.
 constexpr double Smallest = 0.5, Largest = 2.0;
 constexpr int Steps = 3;
 }

@@ -15,13 +15,13 @@ namespace tautline
 {
 /**
  * @brief z = Q r, Q symmetric positive definite: the inverse of the diagonal or, with a linear
- * basis and a kernel that is integrable, of the mass matrix that is scaled to that diagonal.
+ * basis and an integrable kernel, of the mass matrix scaled to that diagonal.
  *
- * On short waves the form of an integrable kernel is a multiple of the mass matrix M. The
- * eigenvalues of M by its diagonal are between 1/2 and 2 on every mesh (Wathen 1987), so three
- * steps of Chebyshev's method leave 7 %. The form of other kernels grows with the frequency by
- * about what M falls, and the diagonal is the better choice; with the constant basis both are the
- * same.
+ * On short waves, the form of an integrable kernel is a multiple of the mass matrix M. The
+ * eigenvalues of M relative to its diagonal are between 1/2 and 2 on every mesh (Wathen 1987), so
+ * that three Chebyshev steps reduce the error to 7 %. For other kernels, the form grows with the
+ * frequency about as much as M decreases, and the diagonal is the better choice; with the constant
+ * basis, both are the same.
  *
  * Source: A. J. Wathen, IMA J. Numer. Anal. 7 (1987) 449-457; Y. Saad, Iterative Methods for Sparse
  * Linear Systems, 2nd ed., algorithm 12.1.
@@ -29,7 +29,7 @@ namespace tautline
 class MassSmoother
 {
 public:
-  /// Throws Error where a diagonal entry of the system is not above 0.
+  /// Throws Error if a diagonal entry of the system is not above 0.
   MassSmoother(
     const HorizonMesh& mesh, const PeridynamicOptions& options, const PeridynamicSystem& system);
   void apply(const double* r, double* z);
@@ -39,10 +39,10 @@ private:
 
   Index Components;
   std::vector<double> Inverse; ///< of the diagonal of the system
-  /// Per triangle its unknown functions, -1 where given, and its area; none: the diagonal alone.
+  /// Per triangle: its unknown functions (-1 if given) and its area; empty: use the diagonal only.
   std::vector<std::array<std::int32_t, 3>> Functions;
   std::vector<double> Areas;
-  std::vector<double> Scale; ///< per row: root of its diagonal entry over that of M
+  std::vector<double> Scale; ///< per row: root of its diagonal entry over the diagonal entry of M
   std::vector<double> Residual, Step;
 };
 

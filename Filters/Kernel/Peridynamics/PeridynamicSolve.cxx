@@ -17,18 +17,19 @@ namespace tautline
 {
 namespace
 {
-/// Cells of the coarse grid in a horizon, and the fewest elements in a cell: with a horizon of two
-/// elements cells have to be narrower than the horizon, or the grid misses changes of volume.
+/// The number of coarse grid cells per horizon, and the minimum number of elements per cell: with a
+/// horizon of two elements, cells must be narrower than the horizon, or the grid misses volume
+/// changes.
 constexpr double CellsPerHorizon = 2.0, LeastElements = 1.5;
 
-/// How much the form of a singular kernel may grow on waves that the diagonal has to serve for.
+/// The allowed growth of the form of a singular kernel on waves that are treated by the diagonal.
 constexpr double DiagonalGrowth = 3.0;
 
-/// Part of the diagonal that is added to the coarse matrix: functions of the grid that depend on
-/// each other at the unknown ones make it singular.
+/// The fraction of the diagonal added to the coarse matrix: grid functions that are linearly
+/// dependent on the unknowns make it singular.
 constexpr double CoarseShift = 1e-10;
 
-/// Where an unknown function is: its vertex, or the centroid of its triangle.
+/// The position of an unknown function: its vertex, or the centroid of its triangle.
 Vec2 placeOf(const HorizonMesh& mesh, PeridynamicBasis basis, Index function)
 {
   const auto point = [&](Index i) { return Vec2{ mesh.points[2 * i], mesh.points[2 * i + 1] }; };
@@ -45,7 +46,7 @@ Vec2 placeOf(const HorizonMesh& mesh, PeridynamicBasis basis, Index function)
   return centre;
 }
 
-/// The side of the square that two triangles of mean area make.
+/// The side of the square formed by two triangles of mean area.
 double elementSize(const HorizonMesh& mesh)
 {
   double area = 0.0;
@@ -78,8 +79,8 @@ double gridSpacing(const HorizonMesh& mesh, const PeridynamicOptions& options)
   return std::max(spacing, LeastElements * h);
 }
 
-/// Bilinear interpolation from a grid over the unknown functions; grid points without any are left
-/// out.
+/// Bilinear interpolation from a grid over the unknown functions; grid points without unknown
+/// functions are left out.
 Prolongation fromGrid(
   const HorizonMesh& mesh, const PeridynamicOptions& options, const PeridynamicSystem& system)
 {
@@ -101,7 +102,7 @@ Prolongation fromGrid(
     cells[i] = std::max(1.0, std::ceil((high[i] - low[i]) / spacing));
     size[i] = std::max((high[i] - low[i]) / cells[i], spacing / LeastElements);
   }
-  // The four corners of each one's cell; corners of weight 0 are none.
+  // The four corners of the cell of each function; corners of weight 0 are ignored.
   std::vector<std::pair<std::int64_t, double>> found;
   std::vector<std::int64_t> keys;
   Prolongation map;
@@ -192,7 +193,7 @@ struct SparseRow
     }
     this->sums[column] += value;
   }
-  /// The sums by increasing column; none are left.
+  /// Returns the sums by increasing column and clears them.
   std::vector<std::pair<std::int32_t, double>> take()
   {
     std::sort(this->touched.begin(), this->touched.end());
@@ -209,7 +210,7 @@ struct SparseRow
   }
 };
 
-/// P^T A with a row per coarse function, each component for itself.
+/// P^T A with a row per coarse function, separately for each component.
 struct CoarseRows
 {
   std::vector<Index> offsets = { 0 };
@@ -244,7 +245,7 @@ struct CoarseRows
   }
 };
 
-/// Rows of sums, one after the other.
+/// Collects rows of sums, one after the other.
 template <class Rows>
 void append(const std::vector<std::pair<std::int32_t, double>>& row, Rows& rows)
 {
@@ -256,14 +257,14 @@ void append(const std::vector<std::pair<std::int32_t, double>>& row, Rows& rows)
   rows.offsets.push_back(static_cast<Index>(rows.columns.size()));
 }
 
-/// P^T A P, each component for itself, and P^T A.
+/// P^T A P, separately for each component, and P^T A.
 SparseMatrix galerkin(const SparseMatrix& matrix, const Prolongation& map,
   const Prolongation& transpose, Index c, int threads, CoarseRows& coarseRows)
 {
   using Row = std::vector<std::pair<std::int32_t, double>>;
   const Index rows = c * map.coarse;
   // P^T A has fewer entries than A: 0.7 times as many with a horizon of two elements, fewer with a
-  // larger one. They are there twice while the rows are joined.
+  // larger one. They are stored twice while the rows are joined.
   constexpr double bytesPerEntry = 2 * (sizeof(double) + sizeof(std::int32_t)) + sizeof(double);
   requireMemory(bytesPerEntry * static_cast<double>(matrix.values.size()),
     "the coarse grid of the preconditioner", "choose Jacobi or AMG of the local limit");
@@ -314,7 +315,7 @@ SparseMatrix galerkin(const SparseMatrix& matrix, const Prolongation& map,
     append(half[row], coarseRows);
     Row().swap(half[row]);
   }
-  symmetrize(coarse, threads); // rounding
+  symmetrize(coarse, threads); // removes rounding errors
   return coarse;
 }
 }
@@ -339,16 +340,16 @@ struct PeridynamicPreconditioner::State
 {
   Index components = 1;
   std::vector<double> inverse;            // of the diagonal
-  std::unique_ptr<MassSmoother> smoother; // in place of it, unless Jacobi is chosen
+  std::unique_ptr<MassSmoother> smoother; // used instead, unless Jacobi is selected
   Prolongation map;
-  std::unique_ptr<InnerSolver> inner; // S; none: the coarse space is empty
+  std::unique_ptr<InnerSolver> inner; // S; null: the coarse space is empty
   CoarseRows rows;                    // of TwoLevel
   std::vector<double> coarse, correction;
   std::vector<double> residual, smoothed, image; // of TwoLevel
 
   bool isMultiplicative() const { return this->rows.size() > 0; }
 
-  /// use(fine row, coarse row, weight) for all entries of P.
+  /// Calls use(fine row, coarse row, weight) for all entries of P.
   template <class Use>
   void forEachWeight(const Use& use) const
   {
@@ -423,7 +424,7 @@ PeridynamicPreconditioner::PeridynamicPreconditioner(const HorizonMesh& mesh,
   if (std::find(system.unknownOf.begin(), system.unknownOf.end(), given) == system.unknownOf.end())
   {
     throw Error("the preconditioner " + std::string(nameOf(preconditioner)) +
-      " needs values that are given in an interaction layer: choose Jacobi, or constrain the "
+      " needs given values in an interaction layer: choose Jacobi, or constrain the "
       "solution");
   }
   own.smoother = std::make_unique<MassSmoother>(mesh, options, system);

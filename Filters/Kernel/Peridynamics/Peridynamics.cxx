@@ -16,7 +16,7 @@ namespace tautline
 {
 namespace
 {
-constexpr Index SampledRows = 200; // of the estimate of memory
+constexpr Index SampledRows = 200; // used for the memory estimate
 // Fraction of the progress at which the bonds of the state-based model are in the matrix.
 constexpr double StateBasedShare = 0.7;
 
@@ -31,24 +31,24 @@ void checkOptions(const PeridynamicOptions& o)
 {
   if (!(o.horizon > 0.0) || !std::isfinite(o.horizon))
   {
-    throw Error("the horizon is " + number(o.horizon) + "; it has to be above 0");
+    throw Error("the horizon is " + number(o.horizon) + "; it must be above 0");
   }
   if (!(o.tolerance >= 1e-10) || !(o.tolerance <= 0.1))
   {
-    throw Error("the tolerance is " + number(o.tolerance) + "; 1e-10 to 0.1 are possible");
+    throw Error("the tolerance is " + number(o.tolerance) + "; it must be from 1e-10 to 0.1");
   }
   if (o.model == PeridynamicModel::StateBased)
   {
     if (!(o.poissonRatio > -1.0) || !(o.poissonRatio < 0.5))
     {
       throw Error(
-        "Poisson's ratio is " + number(o.poissonRatio) + "; it has to be above -1 and below 0.5");
+        "Poisson's ratio is " + number(o.poissonRatio) + "; it must be above -1 and below 0.5");
     }
     if (o.discretization != Discretization::Exact)
     {
       throw Error(
-        "the dissertation's rules are of bond-based models; take the exact discretization "
-        "for the state-based one");
+        "the rules of the dissertation are for bond-based models; use the exact discretization "
+        "for the state-based model");
     }
   }
   const KernelFunction& k = o.kernel;
@@ -56,13 +56,13 @@ void checkOptions(const PeridynamicOptions& o)
   if (k.shape == KernelShape::Power && !(k.exponent >= 0.0 && k.exponent < limit))
   {
     throw Error("the exponent p is " + number(k.exponent) +
-      "; with this basis it has to be from 0 to below " + number(limit) +
+      "; with this basis it must be from 0 to below " + number(limit) +
       ", where the integrals become infinite" +
       (o.basis == PeridynamicBasis::Linear ? "" : " (the linear basis allows more)"));
   }
   if (k.shape == KernelShape::Gaussian && !(k.width > 0.0 && std::isfinite(k.width)))
   {
-    throw Error("the width of the Gaussian is " + number(k.width) + "; it has to be above 0");
+    throw Error("the width of the Gaussian is " + number(k.width) + "; it must be above 0");
   }
   if (k.shape == KernelShape::Table)
   {
@@ -82,7 +82,7 @@ void checkOptions(const PeridynamicOptions& o)
   }
 }
 
-/// A horizon far larger than the mesh is one in another unit, for which the quadrature has no end.
+/// A horizon far larger than the mesh is in another unit; the quadrature would not terminate.
 void checkHorizon(const HorizonMesh& mesh, double horizon)
 {
   constexpr double MostExtents = 1e6;
@@ -96,11 +96,11 @@ void checkHorizon(const HorizonMesh& mesh, double horizon)
   if (horizon > MostExtents * extent)
   {
     throw Error("the horizon is " + number(horizon) + " but the mesh extends over " +
-      number(extent) + " only: give the horizon in the unit of the mesh");
+      number(extent) + " only: specify the horizon in mesh units");
   }
 }
 
-/// Colours triangles so that those of one colour share no function; each colour in increasing
+/// Colors triangles so that triangles of one color share no function; each color in increasing
 /// order.
 std::vector<std::vector<std::int32_t>> colourTriangles(
   const PlanarTriangles& triangles, const FunctionSpace& space, const std::vector<char>& needed)
@@ -118,8 +118,8 @@ std::vector<std::vector<std::int32_t>> colourTriangles(
     }
     return colours;
   }
-  // Greedy: the first colour whose triangles share no vertex with this one.
-  std::vector<std::vector<char>> used; // per colour and vertex
+  // Greedy: use the first color whose triangles share no vertex with this one.
+  std::vector<std::vector<char>> used; // per color and vertex
   for (Index t = 0; t < triangles.size(); ++t)
   {
     if (!needed[t])
@@ -147,7 +147,7 @@ std::vector<std::vector<std::int32_t>> colourTriangles(
   return colours;
 }
 
-/// The unknown functions near an unknown one, itself included, in increasing order of unknowns.
+/// The unknown functions near an unknown one, including itself, in increasing order of unknowns.
 void neighbours(const FunctionSpace& space, const BoxGrid& supports, double horizon, Index unknown,
   std::vector<std::int32_t>& found)
 {
@@ -180,8 +180,8 @@ double bytesFor(const HorizonMesh& mesh, const FunctionSpace& space, const BoxGr
   const double c = isElastic(options.model) ? 2.0 : 1.0;
   const double nonzeros =
     c * c * entries / static_cast<double>(sampled) * static_cast<double>(space.unknowns);
-  // Values twice, as they are mirrored once; columns; the mesh with its boxes and grid; sums per
-  // thread; integrals of pairs that touch, of which a triangle has about thirteen.
+  // Values twice, because they are mirrored once; columns; the mesh with its boxes and grid; sums
+  // per thread; integrals of touching pairs, about thirteen per triangle.
   const double triangles = static_cast<double>(mesh.numberOfTriangles());
   const double perEntry = 2.0 * sizeof(double) + sizeof(std::int32_t);
   const double sums = 3.0 * c * c * sizeof(double) * static_cast<double>(space.functions) *
@@ -196,7 +196,7 @@ void checkMemory(double needed, const PeridynamicOptions& options)
 {
   constexpr double share = 0.9; // the rest is for the solver and the output
   requireMemory(needed, "the matrix",
-    "take a smaller horizon, larger elements or a piecewise linear basis, or raise the limit",
+    "use a smaller horizon, larger elements or a piecewise linear basis, or raise the limit",
     options.memoryLimit > 0.0 ? options.memoryLimit : std::max(1.0, share * availableMemory()));
 }
 
@@ -210,7 +210,7 @@ void checkLayer(const HorizonMesh& mesh, const PeridynamicOptions& options, doub
     std::all_of(mesh.layer.begin(), mesh.layer.end(), [](unsigned char c) { return c == 0; });
   const double reach = interactionReach(options);
   const std::string twice = options.model == PeridynamicModel::StateBased
-    ? " (twice the horizon, as the model is state-based)"
+    ? " (twice the horizon for the state-based model)"
     : "";
   throw Error(none ? "the mesh has no interaction layer; one of width " + number(reach) + twice +
         " around the domain is needed: add it with Interaction Layer"
@@ -219,7 +219,7 @@ void checkLayer(const HorizonMesh& mesh, const PeridynamicOptions& options, doub
         number(reach) + twice + " is needed (Interaction Layer makes it), or allow a thin one");
 }
 
-/// Time limit, observer and progress of an assembly; the first reason to stop counts. For the
+/// Time limit, observer and progress of an assembly; the first reason to stop is kept. For the
 /// calling thread only.
 class AssemblyControl
 {
@@ -230,13 +230,13 @@ public:
     , Last(last)
   {
   }
-  /// Reports the fraction done; false when the work has to stop.
+  /// Reports the fraction done; false if the work must stop.
   bool proceed(double fraction)
   {
     if (this->Time.reached(this->Options.timeLimit))
     {
       this->Reason = "the time limit of " + number(this->Options.timeLimit) +
-        " s is over; take a smaller horizon, larger elements or a longer limit";
+        " s is reached; use a smaller horizon, larger elements or a longer limit";
     }
     else if (this->Options.progress &&
       !this->Options.progress(this->First + (this->Last - this->First) * fraction))
@@ -265,7 +265,7 @@ private:
   Stopwatch Time;
 };
 
-/// @param rows per unknown, whether its rows are wanted; the others are empty
+/// @param rows per unknown: whether its rows are needed; the others are empty
 SparseMatrix makePattern(const FunctionSpace& space, const std::vector<char>& rows,
   const BoxGrid& supports, double horizon, Index components, int threads)
 {
@@ -274,7 +274,7 @@ SparseMatrix makePattern(const FunctionSpace& space, const std::vector<char>& ro
   std::vector<Index> counts(space.unknowns, 0);
   constexpr Index grain = 64;
   ScratchPool<std::vector<std::int32_t>> lists;
-  // First pass: lengths of the rows; second pass: their columns.
+  // First pass: count the entries of the rows; second pass: fill their columns.
   for (const bool fill : { false, true })
   {
     parallelFor(space.unknowns, grain, threads, lists,
@@ -312,7 +312,8 @@ SparseMatrix makePattern(const FunctionSpace& space, const std::vector<char>& ro
   return pattern;
 }
 
-/// Moves the sums of a triangle's functions to their rows. @param rows per unknown: those wanted
+/// Moves the sums of the functions of a triangle to their rows. @param rows per unknown: whether
+/// its rows are needed
 void flush(const PeridynamicWork& work, const std::vector<char>& rows, Index t,
   const std::vector<std::int32_t>& near, RowSums& sums, double scale,
   const std::vector<double>* given, PeridynamicSystem& system)
@@ -341,7 +342,7 @@ void flush(const PeridynamicWork& work, const std::vector<char>& rows, Index t,
       }
     }
   }
-  // What belongs to given functions; then the sums are 0 again.
+  // Move the parts of given functions to the load; then reset the sums to 0.
   for (const std::int32_t other : near)
   {
     for (int b = 0; b < functions; ++b)
@@ -377,9 +378,9 @@ void checkDiagonal(const PeridynamicSystem& system)
     if (diagonal == 0.0)
     {
       throw Error("row " + std::to_string(row) +
-        " of the matrix is empty: the horizon is smaller than the elements, and the dissertation's "
-        "rules find no "
-        "neighbour; take the exact discretization, a larger horizon or smaller elements");
+        " of the matrix is empty: the horizon is smaller than the elements, and the rules of "
+        "the dissertation find no neighbor; use the exact discretization, a larger horizon or "
+        "smaller elements");
     }
   }
 }
@@ -398,12 +399,12 @@ double estimatePeridynamicMemory(const HorizonMesh& mesh, const PeridynamicOptio
 //------------------------------------------------------------------------------
 namespace
 {
-/// The slices of a colour, and of the pairs, after which ranks learn whether one of them has
-/// stopped.
+/// The number of slices of a color, and of the pairs, after which ranks check whether one of them
+/// has stopped.
 constexpr Index SlicesOnRanks = 32;
 
-/// Everything that can be wrong, before the expensive part. Sets what of the system follows.
-/// @param share of the matrix that this rank needs memory for, at most 1
+/// Performs all checks before the expensive part, and sets the resulting members of the system.
+/// @param share fraction of the matrix for which this rank needs memory, at most 1
 void checkAssembly(const HorizonMesh& mesh, const PeridynamicOptions& options,
   const std::vector<double>* given, double share, PeridynamicSystem& system)
 {
@@ -424,7 +425,7 @@ void checkAssembly(const HorizonMesh& mesh, const PeridynamicOptions& options,
   checkMemory(share * system.memory, options);
 }
 
-/// What an assembly works on.
+/// The data of an assembly.
 struct AssemblyParts
 {
   AssemblyParts(const HorizonMesh& mesh, const PeridynamicOptions& options)
@@ -449,7 +450,7 @@ struct AssemblyParts
   BondCut cut;
 };
 
-/// Integrates the triangles of the colours, in their order, into the rows wanted.
+/// Integrates the triangles of the colors, in order, into the needed rows.
 void addTriangles(RankGroup& group, const PeridynamicWork& work, const PairIntegrals* integrals,
   const std::vector<char>& rows, const std::vector<double>* given, AssemblyControl& control,
   PeridynamicSystem& system)
@@ -470,8 +471,8 @@ void addTriangles(RankGroup& group, const PeridynamicWork& work, const PairInteg
     });
   constexpr Index grain = 16;
   const double scale = kernelScale(options);
-  // Within a colour no two threads write to the same row; the colours have a fixed order, the same
-  // on all ranks, so that rows are summed in it.
+  // Within a color, no two threads write to the same row; the order of the colors is fixed and the
+  // same on all ranks, so that rows are summed in this order.
   std::vector<std::vector<std::int32_t>> colours;
   colours = colourTriangles(work.triangles, space, space.trianglesWithUnknowns(work.triangles));
   const Index slices = group.size() > 1 ? SlicesOnRanks : 1;
@@ -508,7 +509,7 @@ void addTriangles(RankGroup& group, const PeridynamicWork& work, const PairInteg
   }
 }
 
-/// What fails on a rank, also at the time limit, fails on all within a slice.
+/// Failures on one rank, including the time limit, stop all ranks within a slice.
 PeridynamicSystem assembledOnRanks(RankGroup& group, const HorizonMesh& mesh,
   const PeridynamicOptions& options, const std::vector<double>* given)
 {
@@ -634,7 +635,8 @@ std::vector<double> sourceLoad(const HorizonMesh& mesh, const PeridynamicSystem&
       const Index row = system.unknownOf[f];
       for (Index i = 0; row >= 0 && i < c; ++i)
       {
-        double sum = 0.0; // of the source at the corners, times the integral of its linear function
+        // sum over the corners of the source times the integral of its linear function
+        double sum = 0.0;
         for (int k = 0; k < 3; ++k)
         {
           const Index from = perVertex ? triangles.triangles[t][k] : t;

@@ -35,7 +35,7 @@ int innerPoints(RuleSet rules, PeridynamicBasis basis)
   }
 }
 
-/// Points of an inner rule: of whole triangles first, then of the parts of cut ones.
+/// The points of an inner rule: first of whole triangles, then of the parts of cut ones.
 struct InnerPoints
 {
   std::vector<double> x, y, squares, weights, values;
@@ -93,7 +93,7 @@ public:
   }
 
 private:
-  /// Copies what is near: corners, numbered locally, and triangles.
+  /// Copies the nearby corners, numbered locally, and triangles.
   void gather(const std::vector<std::int32_t>& near)
   {
     const PlanarTriangles& mesh = this->Work.triangles;
@@ -130,7 +130,7 @@ private:
     for (std::size_t i = 0; i < this->Points.size(); ++i)
     {
       const double dx = this->Px[i] - x[0], dy = this->Py[i] - x[1];
-      this->Far[i] = dx * dx + dy * dy - square; // not above 0 in the disc
+      this->Far[i] = dx * dx + dy * dy - square; // not above 0 in the disk
     }
     InnerPoints& points = this->Found;
     points.clear();
@@ -165,7 +165,7 @@ private:
       points.y[i] -= x[1];
       points.squares[i] = points.x[i] * points.x[i] + points.y[i] * points.y[i];
     }
-    // All kernel values at once, for the vector units.
+    // Evaluate all kernel values at once, for vectorization.
     this->Kernel.evaluate(points.squares.data(), points.values.data(), count);
     for (Index i = 0; i < count; ++i)
     {
@@ -224,13 +224,13 @@ private:
     }
   }
 
-  /// Where the edge from a corner inside to one outside leaves the disc, as a fraction of its
-  /// length.
+  /// The fraction of its length at which the edge from a corner inside to one outside leaves the
+  /// disk.
   double exit(std::int32_t local, int inner, int outer) const
   {
     const std::int32_t p = this->Corners[local][inner], q = this->Corners[local][outer];
     const double ex = this->Px[q] - this->Px[p], ey = this->Py[q] - this->Py[p];
-    // |p|^2 and |q|^2 less the squared radius give the middle coefficient without the centre.
+    // |p|^2 and |q|^2 minus the squared radius give the middle coefficient without the center.
     const double alpha = ex * ex + ey * ey, gamma = this->Far[p];
     const double beta = 0.5 * (this->Far[q] - gamma - alpha);
     return (-beta + std::sqrt(std::max(0.0, beta * beta - alpha * gamma))) / alpha;
@@ -330,7 +330,8 @@ private:
   RadialKernel Kernel;
   bool Elastic;
   int Functions, Outer, Inner;
-  std::vector<std::int32_t> LocalOf, Points; ///< local numbers of points, and which they are of
+  /// local numbers of points, and the points of the local numbers
+  std::vector<std::int32_t> LocalOf, Points;
   std::vector<std::array<std::int32_t, 3>> Corners;
   std::vector<double> Px, Py, Far, ByFunction;
   InnerPoints Found;

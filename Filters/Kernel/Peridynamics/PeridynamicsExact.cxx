@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The exact discretization: which pairs of triangles are integrated, and where their integrals go.
+/// The exact discretization: selection of the pairs of triangles, and storage of their integrals.
 #include "PeridynamicsPair.h"
 
 #include "tautline/Core/Parallel.h"
@@ -12,11 +12,13 @@ namespace tautline
 {
 namespace
 {
-/// A pair of triangles up to a translation, in units of the lattice coordinates are rounded to.
+/// A pair of triangles up to a translation, in units of the lattice to which coordinates are
+/// rounded.
 struct PairKey
 {
   std::int32_t first, second; ///< shapes; without reuse, triangles
-  Index x, y;        ///< from the first corner of one to that of the other; without reuse, 0
+  /// from the first corner of one to the first corner of the other; without reuse, 0
+  Index x, y;
   std::int32_t code; ///< which corners are shared
 
   bool operator==(const PairKey& o) const
@@ -65,7 +67,7 @@ struct SignatureHash
   std::size_t operator()(const Signature& s) const { return s.a; }
 };
 
-/// Where the integrals of a pair are, seen from its first or its second triangle.
+/// The location of the integrals of a pair, as seen from its first or its second triangle.
 using Slot = std::int32_t; // 2 x block + 1 if seen from the second
 }
 
@@ -77,7 +79,7 @@ public:
   void integrate(Index slice, Index slices, const std::function<bool(double)>& proceed);
 
   Index integrated() const { return this->Integrated; }
-  /// Whether all pairs are here. Otherwise those that touch are.
+  /// Whether all pairs are stored. Otherwise, only touching pairs are.
   bool complete() const { return this->Reuse; }
 
   /// The key of a pair seen from triangle t, and whether its two triangles are exchanged in it.
@@ -87,16 +89,16 @@ public:
 
   /// The slots of all pairs of a triangle, in the order of `near`.
   const std::vector<Slot>* slotsOf(Index t, const std::vector<std::int32_t>& near) const;
-  /// The slot of a pair that touches.
+  /// The slot of a touching pair.
   Slot slotOf(Index t, Index other) const;
-  /// The rows of the functions of the triangle a pair is seen from: functions x 2 functions x
+  /// The rows of the functions of the triangle from which a pair is seen: functions x 2 functions x
   /// components^2.
   const double* rows(Slot slot) const
   {
     return this->Rows.data() + static_cast<std::size_t>(slot) * this->RowSize;
   }
   int rowSize() const { return this->RowSize; }
-  /// Turns the block of a pair into the rows seen from its first triangle and from its second.
+  /// Converts the block of a pair to the rows as seen from its first and from its second triangle.
   void toRows(const TrianglePair& pair, const double* block, double* first, double* second) const;
 
 private:
@@ -142,7 +144,7 @@ PairIntegrals::PairIntegrals(const PeridynamicWork& work)
       })
 {
   this->findShapes();
-  // Pairs repeat only in meshes of few shapes, such as structured ones.
+  // Pairs only repeat in meshes with few shapes, such as structured ones.
   const Index few = std::max<Index>(64, work.triangles.size() / 16);
   this->Reuse = work.options.reuseCongruent && this->NumberOfShapes <= few;
   this->Reuse ? this->findPairs(work.needed) : this->findTouching(work.needed);
@@ -155,7 +157,7 @@ PairIntegrals::PairIntegrals(const PeridynamicWork& work)
 void PairIntegrals::findShapes()
 {
   const PlanarTriangles& mesh = this->Work.triangles;
-  // Triangles with the same two edges are congruent by a translation.
+  // Triangles with the same two edges are congruent up to a translation.
   std::map<std::array<Index, 4>, std::int32_t> shapes; // by two edges
   for (Index t = 0; t < mesh.size(); ++t)
   {
@@ -201,7 +203,7 @@ PairKey PairIntegrals::key(Index t, Index other, bool& exchanged) const
   const auto& a = mesh.lattice[mesh.triangles[t][0]];
   const auto& b = mesh.lattice[mesh.triangles[other][0]];
   PairKey key = { this->Shapes[t], this->Shapes[other], b[0] - a[0], b[1] - a[1], 0 };
-  // Of the two orders of a pair, one is taken, whichever triangle it is seen from.
+  // Use one of the two orders of a pair, independently of the triangle from which it is seen.
   exchanged = key.first != key.second ? key.first > key.second : key.x != 0 ? key.x < 0 : key.y < 0;
   if (exchanged)
   {
@@ -269,7 +271,7 @@ TrianglePair PairIntegrals::pair(Index t, Index other, bool exchanged) const
 void PairIntegrals::findPairs(const std::vector<char>& needed)
 {
   const PlanarTriangles& mesh = this->Work.triangles;
-  // Surroundings that are new, by chunk of triangles; then, in order, the pairs in them.
+  // Collect new surroundings by chunk of triangles; then, in order, their pairs.
   std::vector<std::vector<std::pair<Signature, Index>>> found(numberOfChunks(mesh.size()));
   forEachChunk(mesh.size(), this->Work.options.threads,
     [&](Index chunk, Index begin, Index end)
@@ -372,7 +374,7 @@ void PairIntegrals::toRows(
   const TrianglePair& pair, const double* block, double* first, double* second) const
 {
   const int f = this->Functions, n = 2 * f, c = this->Components;
-  // Seen from each triangle, columns are the functions of that one, then those of the other.
+  // As seen from each triangle, the columns are its functions, then the functions of the other.
   for (const bool exchanged : { false, true })
   {
     double* to = exchanged ? second : first;
@@ -450,7 +452,7 @@ public:
         this->add(t, other, this->Integrals.rows(slot), sums);
         continue;
       }
-      // Pairs that do not touch are smooth and cheap: integrated here and not stored.
+      // Pairs that do not touch are smooth and cheap: integrate them here without storing.
       const bool exchanged = other < t;
       const TrianglePair pair = this->Integrals.pair(t, other, exchanged);
       this->Integrator.integrate(pair, this->Block.data());

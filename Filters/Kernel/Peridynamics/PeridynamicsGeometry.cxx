@@ -81,8 +81,8 @@ PlanarTriangles::PlanarTriangles(const HorizonMesh& mesh)
     if (squares > 0.0 && unitOfExtent(std::sqrt(squares)) != 1.0)
     {
       throw Error(triangleName(t) +
-        " is of extreme size: nonlocal models are for triangles between "
-        "5e-20 and 2e19 long. Scale the mesh first (filter Transform)");
+        " is of extreme size: nonlocal models support triangles between 5e-20 and 2e19 long. "
+        "Scale the mesh first (filter Transform)");
     }
     if (std::abs(area) <= 1e-12 * squares)
     {
@@ -103,7 +103,7 @@ PlanarTriangles::PlanarTriangles(const HorizonMesh& mesh)
   }
   if (positive > 0 && negative > 0)
   {
-    const bool few = negative <= positive; // those of the rarer orientation are inverted
+    const bool few = negative <= positive; // triangles of the rarer orientation are inverted
     throw Error(std::to_string(few ? negative : positive) + " of " + std::to_string(count) +
       " triangles are inverted (the first is " + triangleName(few ? firstNegative : firstPositive) +
       "): untangle or orient the mesh first");
@@ -128,7 +128,7 @@ void PlanarTriangles::sortByPlace()
   {
     least = { std::min(least[0], l[0]), std::min(least[1], l[1]) };
   }
-  this->lattice.assign(this->points.size(), { 0, 0 }); // points of no triangle may be anywhere
+  this->lattice.assign(this->points.size(), { 0, 0 }); // unused points may be anywhere
   for (std::size_t t = 0; t < this->triangles.size(); ++t)
   {
     auto &ids = this->triangles[t], &from = this->sources[t];
@@ -137,6 +137,8 @@ void PlanarTriangles::sortByPlace()
       const Vec2 p = this->points[id] - least;
       this->lattice[id] = { std::llround(p[0] / this->unit), std::llround(p[1] / this->unit) };
     }
+    // Start each triangle at its smallest lattice position and sort the triangles, so that results
+    // do not depend on the input order.
     const auto first = std::min_element(ids.begin(), ids.end(),
       [this](std::int32_t a, std::int32_t b) { return this->lattice[a] < this->lattice[b]; });
     const auto turn = first - ids.begin();
@@ -186,7 +188,7 @@ BoxGrid::BoxGrid(const std::vector<Vec2>& low, const std::vector<Vec2>& high)
     this->LargestHalf[1] = std::max(this->LargestHalf[1], 0.5 * (high[i][1] - low[i][1]));
     half = half + 0.5 / static_cast<double>(count) * (high[i] - low[i]);
   }
-  // Cells about as large as the mean box, and not many more of them than boxes.
+  // Cells about as large as the mean box, with not many more cells than boxes.
   const auto cells = [&](double extent, double size)
   { return std::clamp<Index>(static_cast<Index>(extent / std::max(size, 1e-300)), 1, 4096); };
   this->Columns = cells(last[0] - first[0], 2.0 * half[0]);
@@ -198,7 +200,7 @@ BoxGrid::BoxGrid(const std::vector<Vec2>& low, const std::vector<Vec2>& high)
   this->Origin = first;
   this->Cell = { std::max((last[0] - first[0]) / static_cast<double>(this->Columns), 1e-300),
     std::max((last[1] - first[1]) / static_cast<double>(this->Rows), 1e-300) };
-  // Boxes sorted by the cells of their centres (counting sort).
+  // Sort the boxes by the cells of their centers (counting sort).
   std::vector<std::int32_t> cellOf(count);
   this->Starts.assign(this->Columns * this->Rows + 1, 0);
   for (Index i = 0; i < count; ++i)
@@ -239,7 +241,7 @@ Index BoxGrid::row(double y) const
 void BoxGrid::near(Vec2 low, Vec2 high, double reach, std::vector<std::int32_t>& found) const
 {
   found.clear();
-  // Centres may be as far as the half of the largest box beyond the reach.
+  // Centers may be up to half of the largest box beyond the reach.
   const Vec2 slack = { 1.000001 * (reach + this->LargestHalf[0]),
     1.000001 * (reach + this->LargestHalf[1]) };
   const Index firstRow = this->row(low[1] - slack[1]), lastRow = this->row(high[1] + slack[1]);

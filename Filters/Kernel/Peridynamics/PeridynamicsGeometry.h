@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PeridynamicsGeometry.h
- * @brief Triangles with boxes around them, and the search for those near another.
- * Internal: not installed.
+ * @brief Triangles with bounding boxes, and the search for nearby triangles. Internal: not
+ * installed.
  */
 #ifndef tautline_PeridynamicsGeometry_h
 #define tautline_PeridynamicsGeometry_h
@@ -13,18 +13,19 @@
 
 namespace tautline
 {
-/// The mesh with all triangles counter-clockwise, with the area and the box of each.
+/// The mesh with all triangles counterclockwise, with the area and the box of each.
 struct PlanarTriangles
 {
   std::vector<Vec2> points;
   std::vector<std::array<std::int32_t, 3>> triangles;
-  /// Where the corners of each are in HorizonMesh::triangles.
+  /// The positions of the corners of each triangle in HorizonMesh::triangles.
   std::vector<std::array<std::int32_t, 3>> sources;
   std::vector<double> areas;
   std::vector<Vec2> low, high; ///< corners of the bounding boxes
   double shortestEdge = 0.0;
-  bool flipped = false; ///< corners 1 and 2 of every triangle are exchanged
-  /// Of sortByPlace(): coordinates from the least of the triangles, in multiples of `unit`.
+  bool flipped = false; ///< whether corners 1 and 2 of every triangle are exchanged
+  /// Set by sortByPlace(): coordinates relative to the minimum of the triangles, in multiples of
+  /// `unit`.
   std::vector<std::array<Index, 2>> lattice;
   double unit = 0.0;
 
@@ -34,8 +35,8 @@ struct PlanarTriangles
    * @brief Lists the triangles, and the corners of each, in the order of their coordinates, x
    * before y, so that sums over them do not depend on the order of the mesh.
    *
-   * Coordinates are compared as multiples of a unit far below every length: rounding does not
-   * decide, and triangles that are congruent up to a translation begin with the same corner.
+   * Coordinates are compared as multiples of a unit far below every length: rounding has no effect,
+   * and triangles that are congruent up to a translation begin with the same corner.
    */
   void sortByPlace();
   Index size() const { return static_cast<Index>(this->triangles.size()); }
@@ -44,12 +45,12 @@ struct PlanarTriangles
   Vec2 corner(Index t, int k) const { return this->points[this->triangles[t][k]]; }
 };
 
-/// Boxes sorted into a grid, to find those near another.
+/// Boxes sorted into a grid, to find nearby boxes.
 class BoxGrid
 {
 public:
   BoxGrid(const std::vector<Vec2>& low, const std::vector<Vec2>& high);
-  /// All boxes at most `reach` from the given one, in an order that depends on the grid alone.
+  /// All boxes within `reach` of the given one, in an order that only depends on the grid.
   void near(Vec2 low, Vec2 high, double reach, std::vector<std::int32_t>& found) const;
 
 private:

@@ -8,8 +8,8 @@ namespace tautline
 namespace
 {
 constexpr int Intervals =
-  4096; // of the tables of F_m; their cubic interpolation is exact to rounding
-// Nodes and weights of Gauss's rule of order 8 on (-1, 1).
+  4096; // of the tables of F_m, so that their cubic interpolation is exact up to rounding
+// Nodes and weights of the Gauss rule of order 8 on (-1, 1).
 constexpr double gaussNodes[4] = { 0.18343464249564980, 0.52553240991632899, 0.79666647741362674,
   0.96028985649753623 };
 constexpr double gaussWeights[4] = { 0.36268378337836198, 0.31370664587788729, 0.22238103445337447,
@@ -37,7 +37,7 @@ RadialKernel::RadialKernel(const KernelFunction& function, double horizon)
     }
     return;
   }
-  // Other shapes: cumulative integrals by Gauss's rule in each interval.
+  // Other shapes: cumulative integrals by the Gauss rule in each interval.
   const double step = horizon / Intervals;
   for (int m = 0; m < Orders; ++m)
   {
@@ -175,7 +175,7 @@ void RadialKernel::ratios(
         }
         continue;
       }
-      // (R^q - horizon^q) / q, for q near 0 as well.
+      // (R^q - horizon^q) / q, stable for q near 0.
       for (int l = 0; l < NodeCount; ++l)
       {
         const double fall = 0.5 * std::log(this->Horizon * this->Horizon / squares[l]);
@@ -184,7 +184,7 @@ void RadialKernel::ratios(
     }
     return;
   }
-  // Cubic between tabulated values and slopes; below the first, k hardly changes.
+  // Cubic interpolation of tabulated values and slopes; below the first, k hardly changes.
   const double step = this->Horizon / Intervals;
   for (int l = 0; l < NodeCount; ++l)
   {

@@ -23,10 +23,10 @@ double kernelScale(const PeridynamicOptions& options);
 /**
  * @brief k(r) for 0 < r <= delta, and F_m(R) = int_0^R r^(m+1) k(r) dr, m = 0 .. 6.
  *
- * Of powers whose integral from 0 diverges (m + 2 < p), F_m is the primitive that vanishes at
- * infinity; near m + 2 = p the one that vanishes at the horizon. Sums of F_m over directions that
- * close around nothing are right all the same; those around a point need the integral from 0, which
- * then exists (fromOrigin).
+ * For powers whose integral from 0 diverges (m + 2 < p), F_m is the primitive that vanishes at
+ * infinity or, near m + 2 = p, the primitive that vanishes at the horizon. Sums of F_m over closed
+ * directions that do not enclose the point are still correct; sums around the point need the
+ * integral from 0, which then exists (fromOrigin).
  */
 class RadialKernel
 {
@@ -35,7 +35,7 @@ public:
 
   RadialKernel(const KernelFunction& function, double horizon);
 
-  /// k at given squares of r; 0 where r is not more than 1e-10 horizons.
+  /// k at given squares of r; 0 if r is at most 1e-10 horizons.
   void evaluate(const double* squares, double* values, Index count) const;
   /// F_m(R) / R^(m+2) at given squares of R, for m from first to last, into ratios[m].
   void ratios(
@@ -58,9 +58,9 @@ private:
 
   KernelFunction Function;
   double Horizon;
-  int Quarters = -1; ///< of r^2 in the power, when it is a whole number of them
+  int Quarters = -1; ///< of r^2 in the power, if it is a whole number of quarters
   double Full[Orders];
-  /// Other shapes than powers: values of F_m at equal distances from 0 to the horizon.
+  /// Shapes other than powers: values of F_m at equal distances from 0 to the horizon.
   std::vector<double> Radii, Integrals[Orders];
 };
 }

@@ -7,7 +7,7 @@ namespace tautline
 {
 namespace
 {
-// Gauss's rules on (0, 1): nodes and weights.
+// Gauss rules on (0, 1): nodes and weights.
 constexpr double gauss8[8] = { 0.019855071751231884, 0.10166676129318664, 0.23723379504183550,
   0.40828267875217510, 0.59171732124782490, 0.76276620495816450, 0.89833323870681336,
   0.98014492824876812 };
@@ -49,7 +49,8 @@ PairIntegrator::PairIntegrator(const PeridynamicOptions& options, int functions)
 {
   this->FirstDegree = this->Components == 3 ? 2 : 0;
   this->LastDegree = this->FirstDegree + (functions == 1 ? 0 : 2);
-  // Gauss's rule with n nodes errs by about rho^(-2n), rho + 1/rho the sum of the distances.
+  // The error of the Gauss rule with n nodes is about rho^(-2n), where rho + 1/rho is the sum of
+  // the distances.
   const double rho = std::pow(0.1 * this->Tolerance, -1.0 / (2.0 * NodeCount));
   this->EllipseSum = rho + 1.0 / rho;
   // Integrals over the second triangle behave like a power of the distance to it; graded, like a
@@ -87,8 +88,8 @@ bool PairIntegrator::clip(Vec2 a, Vec2 b, double& t0, double& t1) const
 }
 
 //------------------------------------------------------------------------------
-/// Calls work(x, y, squares, weights) for nodes z on the segment; a weight is that of the angle
-/// times |z|^2.
+/// Calls work(x, y, squares, weights) for nodes z on the segment; a weight is the weight of the
+/// angle times |z|^2.
 template <class Work>
 void PairIntegrator::forEachNodes(Vec2 a, Vec2 b, const Work& work) const
 {
@@ -97,11 +98,10 @@ void PairIntegrator::forEachNodes(Vec2 a, Vec2 b, const Work& work) const
   const double ra = std::sqrt(dot(a, a)), rb = std::sqrt(dot(b, b));
   if (!(length > 0.0) || std::abs(twice) <= 1e-15 * length * (ra + rb))
   {
-    return; // seen edge on: no angle
+    return; // seen edge-on: no angle
   }
   Nodes x, y, squares, weights;
-  // Far from the segment one rule of Gauss suffices: the pole is outside the ellipse of
-  // convergence.
+  // Far from the segment, one Gauss rule suffices: the pole is outside the ellipse of convergence.
   if (2.0 * (ra + rb) >= this->EllipseSum * length)
   {
     for (int l = 0; l < NodeCount; ++l)
@@ -114,7 +114,7 @@ void PairIntegrator::forEachNodes(Vec2 a, Vec2 b, const Work& work) const
     work(x, y, squares, weights);
     return;
   }
-  // Near it the nodes are spaced by s = d sinh t, d the distance of the line.
+  // Near the segment, the nodes are spaced by s = d sinh t, where d is the distance from the line.
   const Vec2 along = (1.0 / length) * e;
   const double d = std::abs(twice) / length, sign = twice > 0.0 ? 1.0 : -1.0;
   const Vec2 foot = { sign * d * along[1], -sign * d * along[0] };
@@ -207,12 +207,12 @@ void PairIntegrator::alongCircle(Vec2 a, Vec2 b, double* m) const
 }
 
 //------------------------------------------------------------------------------
-/// Moments of z = y - x over the part of the second triangle in the disc around x; false if there
+/// Moments of z = y - x over the part of the second triangle in the disk around x; false if there
 /// is none.
 bool PairIntegrator::moments(const Vec2* corners, Vec2 x, double* m)
 {
-  // In polar coordinates the integral is a sum over the edges: along the part of each inside the
-  // disc, and along the arcs of the circle beside it.
+  // In polar coordinates, the integral is a sum over the edges: along the part of each edge inside
+  // the disk, and along the adjacent arcs of the circle.
   const Vec2 z[3] = { corners[0] - x, corners[1] - x, corners[2] - x };
   double t0[3], t1[3];
   bool inside[3], any = false, all = true;
@@ -225,7 +225,7 @@ bool PairIntegrator::moments(const Vec2* corners, Vec2 x, double* m)
   this->CutSamples += any && !all;
   if (!any)
   {
-    return false; // x is not in the triangle, so the disc misses it
+    return false; // x is not in the triangle, so the disk misses it
   }
   std::fill(m + momentAt(this->FirstDegree, 0), m + momentAt(this->LastDegree + 1, 0), 0.0);
   for (int k = 0; k < 3; ++k)
@@ -270,7 +270,7 @@ void PairIntegrator::sample(Vec2 x, double weight, double coarseWeight)
   }
   const TrianglePair& pair = *this->Pair;
   const int n = 2 * this->Functions;
-  double values[6] = { 1.0, -1.0 }; // of phi_i, continued from both sides, at x
+  double values[6] = { 1.0, -1.0 }; // of phi_i, extended from both sides, at x
   if (this->Functions == 3)
   {
     const auto barycentric = [x](const Vec2* c, int k)
@@ -287,7 +287,7 @@ void PairIntegrator::sample(Vec2 x, double weight, double coarseWeight)
       const double other = barycentric(pair.second, k);
       if (pair.shared[k] >= 0)
       {
-        // Both vanish together at common corners: the difference of the two is what counts.
+        // Both vanish together at common corners: use the difference of the two.
         values[pair.shared[k]] -= other;
         values[3 + k] = 0.0;
       }
@@ -338,11 +338,11 @@ bool PairIntegrator::applyRules(const Triangle& part, bool cut)
   const Vec2 a = part[0].at, b = part[1].at, c = part[2].at;
   const double area = 0.5 * std::abs(cross(b - a, c - a));
   const int touching = part[0].touches + part[1].touches + part[2].touches;
-  double agreement = std::sqrt(this->Tolerance); // the fine rule errs by the square
+  double agreement = std::sqrt(this->Tolerance); // the error of the fine rule is the square
   if (touching == 0)
   {
     const Vec2 centre = (1.0 / 3.0) * (a + b + c);
-    // Not where circles cut the second triangle: that has kinks.
+    // Not where circles cut the second triangle, because the integrand has kinks there.
     agreement = cut ? 3.0 * std::pow(this->Tolerance, 0.75) : agreement;
     this->sample(centre, area * fineWeights[0], area * coarseWeights[0]);
     for (int ring = 0; ring < 2; ++ring)
@@ -356,7 +356,7 @@ bool PairIntegrator::applyRules(const Triangle& part, bool cut)
   }
   else
   {
-    // Turned so that the corner that touches alone, or that does not, is the apex.
+    // Rotated so that the single touching (or single nontouching) corner is the apex.
     int apex = 0;
     while (part[apex].touches != (touching == 1))
     {
@@ -370,7 +370,7 @@ bool PairIntegrator::applyRules(const Triangle& part, bool cut)
       for (int i = 0; i < count; ++i)
       {
         const double s = std::pow(nodes[i], g), ds = g * s / nodes[i] * weights[i];
-        // From the base (two touch) or from the apex (one does).
+        // Measured from the base (two corners touch) or from the apex (one touches).
         const double height = touching == 1 ? s : 1.0 - s;
         for (int j = 0; j < count; ++j)
         {
@@ -396,13 +396,14 @@ bool PairIntegrator::applyRules(const Triangle& part, bool cut)
 }
 
 //------------------------------------------------------------------------------
-/// Whether circles around points of a part may cut the second triangle; or whether none reaches it.
+/// Whether circles around points of a part may cut the second triangle; also detects that none
+/// reaches it.
 bool PairIntegrator::isCut(const Triangle& part, bool& apart) const
 {
   const double square = this->Horizon * this->Horizon;
   const Vec2* other = this->Pair->second;
-  // The farthest corners show whether everything is within the horizon, the nearest points of the
-  // edges whether nothing is.
+  // The farthest corners determine whether everything is within the horizon, the nearest edge
+  // points whether nothing is.
   double farthest = 0.0, nearest = 1e300;
   for (const Corner& corner : part)
   {
@@ -448,7 +449,7 @@ void PairIntegrator::refine(const Triangle& part, int depth)
   const bool touching = part[0].touches || part[1].touches || part[2].touches;
   this->CutSamples = 0;
   const bool agreed = this->applyRules(part, cut);
-  // Two rules also agree if neither has a point in the cut.
+  // Two rules also agree if neither has a point in the cut part.
   const bool blind = cut && this->CutSamples == 0 && depth < this->BlindDepth;
   if ((agreed && !blind) || depth == MaxDepth || (touching && !cut && depth >= MaxTouchingDepth) ||
     ++this->Parts > MaxParts)
@@ -459,7 +460,7 @@ void PairIntegrator::refine(const Triangle& part, int depth)
     }
     return;
   }
-  // Quartered at the midpoints of the edges.
+  // Quarter the part at the midpoints of the edges.
   const auto between = [](const Corner& a, const Corner& b) {
     return Corner{ 0.5 * (a.at + b.at), a.touches && b.touches };
   };
@@ -483,8 +484,8 @@ void PairIntegrator::identicalPair(const TrianglePair& pair, double* block)
   const double f[3] = { this->Kernel.atHorizon(degree, true),
     this->Kernel.atHorizon(degree + 1, true), this->Kernel.atHorizon(degree + 2, true) };
   double m[5] = {};
-  // F_d(R) - 2 F_d+1(R) / rho + F_d+2(R) / rho^2, rho to the hexagon and R to the horizon if that
-  // is nearer.
+  // F_d(R) - 2 F_d+1(R) / rho + F_d+2(R) / rho^2, where rho is the distance to the hexagon, and R
+  // the smaller of rho and the horizon.
   const auto along = [&](Vec2 a, Vec2 b, bool inside)
   {
     this->forEachNodes(a, b,
@@ -557,7 +558,7 @@ void PairIntegrator::integrate(const TrianglePair& pair, double* block)
   this->Pair = &pair;
   std::fill(block, block + this->blockSize(), 0.0);
   const int n = 2 * this->Functions;
-  // Shared functions stand once, in the rows of the first triangle.
+  // Shared functions occur once, in the rows of the first triangle.
   this->NumberUsed = 0;
   for (int i = 0; i < n; ++i)
   {
@@ -595,8 +596,8 @@ void PairIntegrator::integrate(const TrianglePair& pair, double* block)
   this->Kernel.evaluate(&square, &k, 1);
   // A kernel may vanish at a distance; its mean does not.
   const double mean = 2.0 * this->Kernel.atHorizon(0) / (this->Horizon * this->Horizon);
-  // What a pair can contribute: of triangles larger than the disc, that of the disc; of linear
-  // functions both triangles share, that of differences over the horizon.
+  // The possible contribution of a pair: for triangles larger than the disk, limited by the disk;
+  // for shared linear functions, limited by differences over the horizon.
   const auto areaOf = [](const Vec2* c) { return 0.5 * std::abs(cross(c[1] - c[0], c[2] - c[0])); };
   const double disc = Pi * this->Horizon * this->Horizon;
   const double first = areaOf(pair.first), second = areaOf(pair.second);

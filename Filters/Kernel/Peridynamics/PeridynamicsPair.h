@@ -12,13 +12,13 @@
 
 namespace tautline
 {
-/// Two triangles, counter-clockwise, and which corners they have in common.
+/// Two counterclockwise triangles and their common corners.
 struct TrianglePair
 {
   Vec2 first[3] = {}, second[3] = {};
   /// For each corner of the second: the corner of the first whose function it shares, or -1.
   int shared[3] = { -1, -1, -1 };
-  /// The same for corners at the same place, whether they share a function or not.
+  /// The same for coincident corners, whether or not they share a function.
   int touching[3] = { -1, -1, -1 };
   bool identical = false;
 
@@ -31,20 +31,20 @@ struct TrianglePair
 /**
  * @brief Integrates products of differences of basis functions over pairs of triangles.
  *
- * For x in the first triangle, the integral over the part of the second that lies in the disc
- * around x is a sum over its edges: in polar coordinates around x, which take the singularity away,
- * the radial integral is known (RadialKernel) and the angular one becomes an integral along the
- * edge, or along the circle where the edge is outside. It is exact up to Gauss's rule along the
- * edge, which is spaced by s = d sinh t where the edge passes x closely, at the distance d. What
- * remains is smooth in x but at common corners and edges, towards which points are graded; a
- * triangle is quartered until two rules agree. A triangle with itself needs one integral along the
- * hexagon of its differences, as the area of its intersection with its translate by z is quadratic
- * in z.
+ * For x in the first triangle, the integral over the part of the second that lies in the disk
+ * around x is a sum over its edges: in polar coordinates around x, which remove the singularity,
+ * the radial integral is known (RadialKernel), and the angular one becomes an integral along the
+ * edge, or along the circle where the edge is outside. It is exact up to the Gauss rule along the
+ * edge, whose nodes are spaced by s = d sinh t if the edge passes x at a small distance d. The
+ * result is smooth in x except at common corners and edges, toward which points are graded; a
+ * triangle is quartered until two rules agree. A triangle paired with itself needs one integral
+ * along the hexagon of its differences, because the area of its intersection with its translate by
+ * z is quadratic in z.
  */
 class PairIntegrator
 {
 public:
-  /// components: 1, or 3 (xx, xy, yy) of the tensor kernel; functions: 1 or 3 per triangle
+  /// components: 1, or 3 (xx, xy, yy) for the tensor kernel; functions: 1 or 3 per triangle
   PairIntegrator(const PeridynamicOptions& options, int functions);
 
   int functions() const { return this->Functions; }
@@ -55,19 +55,19 @@ public:
    * @brief int int (phi_i(x) - phi_i(y)) (phi_j(x) - phi_j(y)) k over first x second, symmetric in
    * i and j.
    *
-   * Functions of the first triangle come first; the entries of a function both share are in its
-   * rows and columns, those of the second's are zero. For a pair `identical`, halved: such a pair
-   * comes once, others twice.
+   * Functions of the first triangle come first; the entries of a shared function are in the rows
+   * and columns of the first triangle, and zero in the second. Halved for an `identical` pair,
+   * which occurs once, while others occur twice.
    */
   void integrate(const TrianglePair& pair, double* block);
 
   /// x^(d-b) y^b of degree d is at d (d + 1) / 2 + b.
   static constexpr int Moments = 15;
   /**
-   * @brief Moments of y - x, times k, over the part of a triangle in the disc around x, of the
+   * @brief Moments of y - x, times k, over the part of a triangle in the disk around x, for the
    * degrees that the model needs (elastic, three functions: 2 to 4); false if there is no such
    * part.
-   * @param inside whether x is in the triangle: then only moments that exist are right
+   * @param inside whether x is in the triangle: then only existing moments are correct
    */
   bool momentsAround(const Vec2* corners, Vec2 x, bool inside, double* m);
 
@@ -95,18 +95,20 @@ private:
   double Horizon, Tolerance;
   int Functions, Components, FirstDegree, LastDegree;
   double
-    EllipseSum; ///< distances of a pole to the ends of a segment over its half length that suffice
+    /// sufficient sum of distances of a pole to the ends of a segment over its half length
+    EllipseSum;
   double EdgeGrading;
 
-  // Of the pair at hand.
+  // The current pair.
   const TrianglePair* Pair = nullptr;
   int Used[6], NumberUsed = 0; ///< functions with entries
   Vec2 Gradients[6] = {};      ///< of the second triangle's part of each function
   double Scale = 0.0;
-  bool FromOrigin = false; ///< of radial integrals, see RadialKernel
+  bool FromOrigin = false; ///< for radial integrals, see RadialKernel
   int Parts = 0, CutSamples = 0;
   int
-    BlindDepth; ///< down to which a part is quartered if the circle cuts the second triangle unseen
+    /// depth to which a part is quartered if the circle cuts the second triangle between samples
+    BlindDepth;
   std::array<double, 108> Fine, Coarse, Sum; ///< blocks: of two rules on a part; of all parts
 };
 }

@@ -20,7 +20,7 @@ std::vector<int> ranksOfRows(RankGroup& group, const FunctionSpace& space)
     const Vec2 middle = 0.5 * (space.low[f] + space.high[f]);
     places.push_back({ middle[0], middle[1], 0.0 });
   }
-  // The same on all ranks; one of them is enough for the division.
+  // The data are the same on all ranks; one rank is enough for the division.
   const PointDivision division(group, group.rank() == 0 ? places : std::vector<Vec3>());
   std::transform(places.begin(), places.end(), ranks.begin(),
     [&division](const Vec3& x) { return division.find(x); });

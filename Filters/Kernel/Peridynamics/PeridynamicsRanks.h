@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PeridynamicsRanks.h
- * @brief How ranks share the rows of a nonlocal matrix.
- * Internal: not installed.
+ * @brief The distribution of the rows of a nonlocal matrix over ranks. Internal: not installed.
  */
 #ifndef tautline_PeridynamicsRanks_h
 #define tautline_PeridynamicsRanks_h
@@ -18,9 +17,9 @@ namespace tautline
 std::vector<int> ranksOfRows(RankGroup& group, const FunctionSpace& space);
 
 /**
- * @brief Sends the rows of each rank to the first one, which has the pattern of all: one rank after
- * the other, so that few are there twice. The others have no matrix after it. Collective.
- * @param ranks of ranksOfRows()
+ * @brief Sends the rows of each rank to the first one, which has the whole pattern: one rank after
+ * the other, so that few rows are stored twice. The others have no matrix afterwards. Collective.
+ * @param ranks from ranksOfRows()
  */
 void gatherRows(RankGroup& group, const std::vector<int>& ranks, PeridynamicSystem& system);
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TriangleAssembler.h
- * @brief What the two discretizations of the peridynamic integrals share.
- * Internal: not installed.
+ * @brief The common part of the two discretizations of the peridynamic integrals. Internal: not
+ * installed.
  */
 #ifndef tautline_TriangleAssembler_h
 #define tautline_TriangleAssembler_h
@@ -14,7 +14,7 @@
 
 namespace tautline
 {
-/// What an assembly works on and puts into.
+/// The input and output of an assembly.
 struct PeridynamicWork
 {
   const PlanarTriangles& triangles;
@@ -24,7 +24,7 @@ struct PeridynamicWork
   const BondCut& cut;
   const std::vector<char>& needed; ///< per triangle: whether rows of its functions are assembled
 
-  /// The triangles that triangle t interacts with, itself included.
+  /// The triangles with which triangle t interacts, including itself.
   void neighboursOf(Index t, std::vector<std::int32_t>& near) const
   {
     this->grid.near(this->triangles.low[t], this->triangles.high[t], this->options.horizon, near);
@@ -36,7 +36,7 @@ struct PeridynamicWork
  * @brief Adds up the rows of the functions of one triangle.
  *
  * An assembler keeps the sums of three functions (each with one or two components) over all
- * functions; values are added by function, and go to the matrix all at once.
+ * functions; values are added by function and moved to the matrix together.
  */
 class RowSums
 {
@@ -60,7 +60,7 @@ private:
   Index Functions;
 };
 
-/// Integrates one triangle against the triangles near it and adds to the rows of its functions.
+/// Integrates one triangle against nearby triangles and adds to the rows of its functions.
 class TriangleAssembler
 {
 public:
@@ -72,12 +72,12 @@ std::unique_ptr<TriangleAssembler> makeDissertationAssembler(const PeridynamicWo
 
 /// Integrals over pairs of triangles, kept for congruent ones.
 class PairIntegrals;
-/// Finds the pairs that are kept.
+/// Finds the pairs whose integrals are kept.
 std::shared_ptr<PairIntegrals> makePairIntegrals(const PeridynamicWork& work);
 /**
  * @brief Integrates one of several parts of the pairs.
  * @param slice 0 to slices - 1
- * @param proceed gets the fraction of all pairs that is done and returns whether to continue
+ * @param proceed receives the fraction of all pairs done and returns whether to continue
  */
 void integratePairs(
   PairIntegrals& integrals, Index slice, Index slices, const std::function<bool(double)>& proceed);
@@ -86,11 +86,11 @@ std::unique_ptr<TriangleAssembler> makeExactAssembler(
   const PeridynamicWork& work, const PairIntegrals& integrals);
 
 /**
- * @brief Of the state-based model: adds (lambda - mu) int theta(u) theta(w) to the matrix and the
+ * @brief For the state-based model: adds (lambda - mu) int theta(u) theta(w) to the matrix and the
  * load of the given values, see Dilatation.h.
  *
- * The integral over x is by a rule of degree 5 on each triangle, the one over y is exact.
- * @param proceed gets the fraction done and returns whether to continue
+ * The integral over x uses a rule of degree 5 on each triangle; the integral over y is exact.
+ * @param proceed receives the fraction done and returns whether to continue
  */
 void addDilatation(const PeridynamicWork& work, const std::vector<double>* given,
   PeridynamicSystem& system, const std::function<bool(double)>& proceed);

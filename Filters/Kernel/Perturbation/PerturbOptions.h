@@ -13,21 +13,21 @@
 
 namespace tautline
 {
-/// How many vertices move, how far, and how many elements are to be inverted.
+/// The number of vertices to move, the distances, and the number of elements to invert.
 struct PerturbOptions
 {
   double percentage = 50.0; ///< of the movable vertices to move, 0 to 100
-  /// A vertex moves by a random fraction, evenly from 0 to this (0 to 1), of its distance to
-  /// inversion.
+  /// A vertex moves by a random fraction, uniformly distributed from 0 to this (0 to 1), of its
+  /// distance to inversion.
   double fraction = 0.5;
   double tangledFraction = 0.0; ///< of the elements to be inverted in the end, 0 to 1
   std::uint64_t seed = 0;
-  bool singlePrecision = false; ///< new coordinates are rounded to float, and still do not invert
+  bool singlePrecision = false; ///< round new coordinates to float without inverting elements
   int threads = 0;              ///< 0: all cores. The result does not depend on it.
-  /// One number per point, at least 0, by which its random numbers and its turn are chosen, so that
+  /// One number per point, at least 0, that determines its random numbers and its turn, so that
   /// they do not depend on the order of the points; null: its index.
   const Index* ids = nullptr;
-  /// Called now and then with the fraction done, 0 to 1; returns whether to continue. May be empty.
+  /// Called periodically with the fraction done, 0 to 1; returns whether to continue. May be empty.
   std::function<bool(double)> progress;
 };
 
@@ -41,7 +41,7 @@ struct Perturbation
   Index invertedBefore = 0;
   Index invertedAfter = 0;
   double largestDisplacement = 0;
-  bool stopped = false; ///< progress() returned false; the points are those reached
+  bool stopped = false; ///< progress() returned false; the points are intermediate
 };
 }
 #endif

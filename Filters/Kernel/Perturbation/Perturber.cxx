@@ -118,7 +118,7 @@ void Perturber::findMovable(const unsigned char* fixed)
 }
 
 //------------------------------------------------------------------------------
-/// The movable vertices in a random order that depends on the seed and the stream only.
+/// The movable vertices in a random order that only depends on the seed and the stream.
 std::vector<Index> Perturber::sortedByChance(std::uint64_t stream) const
 {
   std::vector<Key> keys;
@@ -146,7 +146,7 @@ bool Perturber::report(double done)
 }
 
 //------------------------------------------------------------------------------
-/// On a surface a cell also counts as inverted where it has turned by 90 degrees.
+/// On a surface, a cell is also inverted if it has rotated by 90 degrees.
 Validity Perturber::stateOf(const Neighbour& n) const
 {
   const Validity own = this->TheMesh.classifyCell(*n.topology, n.points);
@@ -282,7 +282,7 @@ void Perturber::place(const Vec3& p)
 //------------------------------------------------------------------------------
 bool Perturber::findStates()
 {
-  // Whether no cell is worse than it was; the new states are complete only then.
+  // Whether no cell is worse than before; the new states are complete only in this case.
   this->NewStates.clear();
   for (const Neighbour& n : this->Star)
   {
@@ -318,7 +318,8 @@ void Perturber::moveVertex(Index vertex)
     this->place(this->Center);
     const Vec3 along = this->direction(random);
     double distance = this->Options.fraction * random.uniform() * this->distanceToInversion(along);
-    // The first step is right but for rounding, warped cells of a surface and degenerate cells.
+    // The first step is correct except for rounding, warped cells of a surface, and degenerate
+    // cells.
     for (int halving = 0; halving < HalvingsTried; ++halving, distance *= 0.5)
     {
       const Vec3 p = this->position(distance, along);
@@ -362,7 +363,8 @@ void Perturber::move()
 //------------------------------------------------------------------------------
 Index Perturber::gain(Index limit)
 {
-  // Elements more that are inverted; none if that exceeds the limit or makes a degenerate cell.
+  // The number of additionally inverted elements; no value if it exceeds the limit or creates a
+  // degenerate cell.
   this->NewStates.clear();
   Index more = 0;
   for (const Neighbour& n : this->Star)
@@ -407,7 +409,7 @@ Index Perturber::tangleVertex(Index vertex, int pass, Index target, Index limit)
     std::sort(this->Crossings.begin(), this->Crossings.end());
     for (std::size_t k = 0; k + 1 < this->Crossings.size() && best != target; ++k)
     {
-      // Not too near either end, where a cell is degenerate.
+      // Not too close to either end, where a cell is degenerate.
       const double from = this->Crossings[k], to = this->Crossings[k + 1];
       const double distance = from + (0.25 + 0.5 * random.uniform()) * (to - from);
       const Vec3 p = this->position(distance, along);
@@ -452,7 +454,7 @@ void Perturber::tangle()
       {
         return;
       }
-      // Spread over the vertices that are left.
+      // Distribute over the remaining vertices.
       const Index left = static_cast<Index>(order.size() - i);
       this->tangleVertex(order[i], pass, (missing + left - 1) / left, missing);
     }

@@ -25,10 +25,10 @@ enum Stream : std::uint64_t
   TangleVertex // and above: one stream per pass
 };
 
-/// Throws Error on options out of range and on cells of higher order.
+/// Throws Error for options out of range and for cells of higher order.
 void checkPerturbation(const Mesh& mesh, const PerturbOptions& options);
 
-/// A cell around the vertex that moves.
+/// A cell around the moving vertex.
 struct Neighbour
 {
   Index cell;
@@ -37,7 +37,7 @@ struct Neighbour
   std::array<bool, MaxNodes> moves; ///< whether the node is the vertex
 };
 
-/// Determinant of a corner, value + slope t, where its vertex is t along a direction.
+/// The determinant of a corner, value + slope t, with its vertex moved by t along a direction.
 struct Line
 {
   double value, slope;
@@ -45,17 +45,17 @@ struct Line
 
 /**
  * @class tautline::Perturber
- * @brief Moves vertices one by one, each short of inversion or past it, and keeps the validity of
- * the cells around.
+ * @brief Moves vertices one by one, each up to or past inversion, and maintains the validity of the
+ * surrounding cells.
  */
 class Perturber
 {
 public:
   Perturber(const Mesh& mesh, const unsigned char* fixed, const PerturbOptions& options);
 
-  /// Moves the chosen vertices short of inversion.
+  /// Moves the chosen vertices by less than the distance to inversion.
   void move();
-  /// Moves vertices past it, until enough elements are inverted.
+  /// Moves vertices past the distance to inversion until enough elements are inverted.
   void tangle();
   Perturbation finish();
 
@@ -71,9 +71,9 @@ private:
     }
   };
 
-  /// The number of a vertex by which its random numbers and its turn are chosen.
+  /// The number of a vertex that determines its random numbers and its turn.
   Index idOf(Index vertex) const { return this->Options.ids ? this->Options.ids[vertex] : vertex; }
-  /// Moves a vertex short of inversion, with the others where they are.
+  /// Moves a vertex by less than the distance to inversion, with the others fixed.
   void moveVertex(Index vertex);
   void findNormals();
   void findMovable(const unsigned char* fixed);
@@ -97,14 +97,14 @@ private:
   const PerturbOptions& Options;
   VertexCells Adjacency;
   const bool Surface;
-  std::vector<Vec3> Normals; ///< of the cells of a surface, as they were
+  std::vector<Vec3> Normals; ///< original normals of the cells of a surface
   std::vector<signed char> States;
   std::vector<Index> Movable;
   Perturbation Result;
 
-  std::vector<Neighbour> Star; ///< the cells around the vertex at hand
+  std::vector<Neighbour> Star; ///< the cells around the current vertex
   double Radius = 0;           ///< distance of their farthest vertex
-  Vec3 Center = { 0, 0, 0 };   ///< where the vertex is
+  Vec3 Center = { 0, 0, 0 };   ///< position of the vertex
   std::vector<signed char> NewStates;
   std::vector<double> Crossings;
 };

@@ -14,11 +14,13 @@ namespace
 {
 constexpr Index Grain = 512;
 
-/// A face that is steeper than this cosine to the line of the centers is skewed as at it.
+/// For faces steeper than this cosine relative to the line of the centers, the skewness is
+/// evaluated at this cosine.
 constexpr double LeastCosine = 0.1;
-/// Of the widths that a skewness is compared with, see FaceMeasures.
+/// The minimum widths relative to which skewness is measured, see FaceMeasures.
 constexpr double InternalWidth = 0.2, BoundaryWidth = 0.4;
-/// Of the mean size of the tetrahedra of a cell: smaller ones are compared with this part of it.
+/// The minimum reference volume of a tetrahedron, as a fraction of the mean tetrahedron size of its
+/// cell.
 constexpr double LeastPart = 0.25;
 
 double widthOf(
@@ -171,6 +173,7 @@ void FaceEnergy::findVolumes(const double* points)
     const Index other = this->Mesh.internal(face) ? this->Mesh.neighbor[face] : own;
     for (Index edge = 0; edge < this->Mesh.size(face); ++edge)
     {
+      // Inverted or flat tetrahedra get a fraction of the mean as reference volume.
       this->Volumes[this->NodeStarts[i] + edge] = { std::max(volume(face, edge, own),
                                                       LeastPart * means[own]),
         std::max(volume(face, edge, other), LeastPart * means[other]) };
@@ -196,6 +199,8 @@ void FaceEnergy::freeze(const double* points)
       if (this->Mesh.hasTwoCells(face))
       {
         const Vec3 d = centerAcross(this->Mesh, g, face) - own;
+        // The offset of the face center from the intersection of the face plane with the line
+        // between the cell centers.
         const double along = std::max(dot(area, d), LeastCosine * norm(area) * norm(d));
         off = toFace - (along > 0 ? dot(area, toFace) / along : 0) * d;
         least = InternalWidth * norm(d);
@@ -206,7 +211,7 @@ void FaceEnergy::freeze(const double* points)
         off = toFace - dot(normal, toFace) * normal;
         least = BoundaryWidth * std::abs(dot(normal, toFace));
       }
-      // Of a face of no size, any width: it has no skewness then.
+      // For a face of zero size, use any width: it then has no skewness.
       const double wide = widthOf(this->Mesh, face, points, g.center[face], unitOf(off));
       this->Widths[i] = std::max({ least, wide, std::numeric_limits<double>::min() });
     });
@@ -214,7 +219,7 @@ void FaceEnergy::freeze(const double* points)
 }
 
 //------------------------------------------------------------------------------
-/// Chooses the fans of the faces, and their volumes of comparison.
+/// Chooses the fans of the faces, and their reference volumes.
 void FaceEnergy::findFans(const double* points)
 {
   const auto volume = [&](const Index* nodes, Index base, Index a, Index b, const Vec3& apex)
@@ -245,7 +250,7 @@ void FaceEnergy::findFans(const double* points)
 }
 
 //------------------------------------------------------------------------------
-/// Brings the faces and centers of the moving cells up to date.
+/// Updates the faces and centers of the moving cells.
 void FaceEnergy::measure(const double* points)
 {
   parallelFor(static_cast<Index>(this->Faces.size()), Grain, this->Options.threads,
@@ -275,6 +280,7 @@ void FaceEnergy::addAngle(FaceCost& cost, Index face, const Vec3& d) const
   const double limit = 1 - std::cos(this->Options.angle / DegreesPerRadian);
   const double base = std::max(0.0, (1 - cosine) / limit);
   cost.value += std::pow(base, this->Options.power);
+  // Derivatives by the cosine, then by the area vector and the line between the centers.
   const double byCosine = -this->Options.power * std::pow(base, this->Options.power - 1) / limit;
   cost.area += (byCosine / size) * (e - cosine * s);
   const Vec3 byD = (byCosine / length) * (s - cosine * e);
@@ -309,7 +315,7 @@ void FaceEnergy::addSkewness(FaceCost& cost, Index face, const Vec3& d) const
   const Vec3 byToFace = byOff - k * area;
   Vec3 byD = -fraction * byOff;
   cost.area -= k * toFace;
-  // The scale is the component of d, or below it a part of its length.
+  // The scale is the component of d, but at least a fraction of its length.
   const double byScale = k * fraction;
   cost.area += steep ? (byScale * LeastCosine * length / size) * area : byScale * d;
   byD += steep ? (byScale * LeastCosine * size / length) * d : byScale * area;
@@ -345,7 +351,7 @@ void FaceEnergy::addBoundarySkewness(FaceCost& cost, Index face) const
 }
 
 //------------------------------------------------------------------------------
-/// psi of a tetrahedron by its size over the reference, with its derivative; adds the value.
+/// psi of a tetrahedron as a function of its relative size, with its derivative; adds the value.
 double FaceEnergy::addShrinking(FaceCost& cost, double t) const
 {
   cost.least = std::min(cost.least, t);
@@ -366,9 +372,9 @@ double FaceEnergy::addShrinking(FaceCost& cost, double t) const
 }
 
 //------------------------------------------------------------------------------
-/// Adds the tetrahedra of a face and the center of a cell: of each edge with the center of the
-/// face, and of the triangles of a fan.
-/// @param side 0: the owner's, 1: the neighbor's
+/// Adds the tetrahedra of a face and the center of a cell: one for each edge with the center of the
+/// face, and for the triangles of a fan.
+/// @param side 0: owner, 1: neighbor
 void FaceEnergy::addTetrahedra(FaceCost& cost, Index face, int side, const double* points,
   const Vec3& apex, Vec3& byApex, Vec3* nodeBars) const
 {
@@ -426,7 +432,7 @@ void FaceEnergy::addTetrahedra(FaceCost& cost, Index face, int side, const doubl
 }
 
 //------------------------------------------------------------------------------
-/// The point of a face from which the least tetrahedron of a fan is largest.
+/// The point of a face that maximizes the smallest tetrahedron of its fan.
 Index FaceEnergy::bestBase(Index face, const double* points) const
 {
   const FaceGeometry& g = this->Geometry;
@@ -485,7 +491,7 @@ FaceEnergy::FaceCost FaceEnergy::costOf(Index face, const double* points, Vec3* 
 }
 
 //------------------------------------------------------------------------------
-/// The derivative by the center of a cell.
+/// The derivative with respect to the center of a cell.
 Vec3 FaceEnergy::centerBar(Index cell, const std::vector<FaceCost>& costs) const
 {
   Vec3 bar = { 0, 0, 0 };
@@ -504,7 +510,7 @@ Vec3 FaceEnergy::centerBar(Index cell, const std::vector<FaceCost>& costs) const
 }
 
 //------------------------------------------------------------------------------
-/// Adds the derivatives by a face that come by way of the center of a cell.
+/// Adds the derivatives with respect to a face that arise through the center of a cell.
 void FaceEnergy::addFromCell(Index cell, Index face, FaceBar& bar) const
 {
   if (!this->Moves[cell])
@@ -533,7 +539,7 @@ void FaceEnergy::addFromCell(Index cell, Index face, FaceBar& bar) const
 }
 
 //------------------------------------------------------------------------------
-/// The derivatives by the points of a face.
+/// The derivatives with respect to the points of a face.
 void FaceEnergy::addToNodes(
   Index face, const FaceBar& bar, const double* points, Vec3* nodeBars) const
 {
@@ -614,7 +620,7 @@ double FaceEnergy::evaluate(const double* points, double* gradient)
     return std::isfinite(value) ? value : std::numeric_limits<double>::infinity();
   }
 
-  // From the centers of the cells to the apexes of their pyramids.
+  // Propagate derivatives from the centers of the cells to the apexes of their pyramids.
   const FaceGeometry& g = this->Geometry;
   parallelFor(static_cast<Index>(this->Cells.size()), Grain, this->Options.threads,
     [&](Index i)
@@ -637,7 +643,7 @@ double FaceEnergy::evaluate(const double* points, double* gradient)
       this->ApexBars[cell] = (1.0 / static_cast<double>(end - begin)) * byApex;
     });
 
-  // From the centers and the faces to the points.
+  // Propagate derivatives from the centers and the faces to the points.
   parallelFor(faces, Grain, this->Options.threads,
     [&](Index i)
     {

@@ -1,25 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file FaceEnergy.h
- * @brief What the faces of a mesh of finite volumes cost, with its gradient.
- * Internal: not installed.
+ * @brief The energy of the faces of a finite-volume mesh, with its gradient. Internal: not
+ * installed.
  *
- * With S and f the area vector and center of a face, C and C' the centers of its cells, d = C' - C:
+ * With the area vector S and center f of a face, the centers C and C' of its cells, and d = C' - C:
  *
  *     sum over faces ((1 - cos(S, d)) / a)^p + s (|v| / (w b))^q
  *     + sum over tetrahedra psi(V / V0)
  *
- * v is the vector of the skewness, which see in FaceMeasures.h, w the width that it is compared
- * with, of the points of freeze(). Each face has in each of its cells a
- * tetrahedron for each edge, with f and C, and those of C and a fan of triangles from the best
- * point of the face at freeze(). V0 is its volume at the points of the constructor,
- * where that is a fourth of the mean size of those of its cell or more, else this.
- * psi(t) = (e - t)^2 / chi(t) below e, else 0; chi(t) = (t + sqrt(t^2 + delta^2)) / 2, with which
- * negative volumes have a value, too (Garanzha et al., Foldover-free maps in 50 lines of code, ACM
- * Trans. Graph. 40 (2021)).
+ * v is the skewness vector, see FaceMeasures.h, and w the reference width at the points of
+ * freeze(). In each of its cells, each face has a tetrahedron per edge, with f and C, and the
+ * tetrahedra of C with a fan of triangles from the best point of the face at freeze(). V0 is the
+ * volume of a tetrahedron at the points of the constructor, but at least a fourth of the mean size
+ * in its cell. psi(t) = (e - t)^2 / chi(t) below e, otherwise 0; chi(t) = (t + sqrt(t^2 + delta^2))
+ * / 2, so that negative volumes also have a value (Garanzha et al., Foldover-free maps in 50 lines
+ * of code, ACM Trans. Graph. 40 (2021)).
  *
- * The gradient goes back the way by which values are computed: from centers of cells to faces, from
- * faces to points; it costs about as much as the value.
+ * The gradient is computed by reverse accumulation: from cell centers to faces, and from faces to
+ * points; it costs about as much as the value.
  */
 #ifndef tautline_FaceEnergy_h
 #define tautline_FaceEnergy_h
@@ -31,14 +30,14 @@ namespace tautline
 /// The limits and exponents of the energy.
 struct FaceEnergyOptions
 {
-  double angle = 65;      ///< degrees: a non-orthogonality of this costs 1
-  double skewness = 3;    ///< a skewness of this costs 1
+  double angle = 65;      ///< degrees: the non-orthogonality with cost 1
+  double skewness = 3;    ///< the skewness with cost 1
   double power = 4;       ///< of 1 - cos, above 0.5
   double skewPower = 6;   ///< of the skewness, above 1
   double shrinking = 0.1; ///< e
   double weight = 1;      ///< of the tetrahedra
   double skewWeight = 1;  ///< of the skewness
-  double delta = 0;       ///< of chi; 0: negative volumes are not allowed
+  double delta = 0;       ///< delta of chi; 0: negative volumes are not allowed
   int threads = 0;
 };
 
@@ -52,7 +51,7 @@ public:
   /**
    * @brief The faces of cells with a free point.
    * @param points 3 coordinates per point of the mesh
-   * @param free one flag per point: it moves
+   * @param free one flag per point: nonzero if it moves
    */
   FaceEnergy(const FaceMesh& mesh, const double* points, const std::vector<char>& free,
     const FaceEnergyOptions& options);
@@ -60,13 +59,13 @@ public:
   void setOptions(const FaceEnergyOptions& options) { this->Options = options; }
   const FaceEnergyOptions& options() const { return this->Options; }
 
-  /// Takes the widths of comparison from these points, and the places of those that are not free.
+  /// Sets the reference widths from these points, and the positions of the fixed points.
   void freeze(const double* points);
 
   /**
-   * @brief The energy, and its gradient by the free points, 3 for each; +infinity if a tetrahedron
-   * has no positive volume and delta is 0.
-   * @param gradient overwritten; null: not wanted
+   * @brief The energy, and its gradient with respect to the free points, 3 for each; +infinity if a
+   * tetrahedron has no positive volume and delta is 0.
+   * @param gradient overwritten; null: not computed
    */
   double evaluate(const double* points, double* gradient);
 
@@ -76,14 +75,14 @@ public:
   const std::vector<Index>& freePoints() const { return this->Points; }
 
 private:
-  /// What a face costs, with the derivatives by what it is computed from.
+  /// The cost of a face, with the derivatives with respect to its inputs.
   struct FaceCost
   {
     double value = 0;
     double least = 1; ///< of V / V0
     Vec3 area = { 0, 0, 0 }, center = { 0, 0, 0 }, own = { 0, 0, 0 }, other = { 0, 0, 0 };
   };
-  /// The derivatives of the energy by the area vector and the center of a face.
+  /// The derivatives of the energy with respect to the area vector and the center of a face.
   struct FaceBar
   {
     Vec3 area, center;
@@ -107,21 +106,23 @@ private:
   FaceEnergyOptions Options;
   std::vector<Index> Cells;           ///< with a free point
   std::vector<Index> Faces;           ///< of these cells
-  std::vector<Index> Places;          ///< per face: its place in Faces, or -1
+  std::vector<Index> Places;          ///< per face: its position in Faces, or -1
   std::vector<char> Moves;            ///< per cell: in Cells
   std::vector<Index> Points;          ///< free ones
-  std::vector<Index> UseStarts, Uses; ///< per free point: places of its uses in NodeBars
-  std::vector<Index> NodeStarts;      ///< per face of Faces: its first place in NodeBars
-  FaceGeometry Geometry;              ///< of the whole mesh; up to date where points are free
+  std::vector<Index> UseStarts, Uses; ///< per free point: positions of its uses in NodeBars
+  std::vector<Index> NodeStarts;      ///< per face of Faces: its first position in NodeBars
+  FaceGeometry Geometry;              ///< of the whole mesh; up to date near free points
   std::vector<double> Widths;         ///< per face of Faces
-  /// Per place in NodeBars, six times V0 of the owner's and of the neighbor's tetrahedron.
+  /// Per position in NodeBars: six times V0 of the tetrahedra of the owner and the neighbor.
   std::vector<std::array<double, 2>> Volumes;
-  std::vector<std::array<double, 2>> FanVolumes; ///< the same of the fans
+  std::vector<std::array<double, 2>> FanVolumes; ///< the same for the fans
   std::vector<Index> Bases;                      ///< per face of Faces: the base point of its fan
-  std::vector<double> Start, MeanVolumes; ///< points of the constructor; per cell of its tetrahedra
-  std::vector<Vec3> StartCenters;         ///< of the cells
-  std::vector<Vec3> CellBars;             ///< per cell of the mesh; 0 for those that do not move
-  std::vector<Vec3> ApexBars; ///< the same of the apexes of its pyramids, over its faces
+  /// points of the constructor; mean volume of the tetrahedra per cell
+  std::vector<double> Start, MeanVolumes;
+  std::vector<Vec3> StartCenters; ///< of the cells
+  std::vector<Vec3> CellBars;     ///< per cell of the mesh; 0 for fixed cells
+  /// the same for the apexes of its pyramids, divided by its number of faces
+  std::vector<Vec3> ApexBars;
   std::vector<Vec3> NodeBars;
   double Least = 0;
 };

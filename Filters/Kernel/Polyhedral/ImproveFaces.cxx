@@ -15,35 +15,38 @@ namespace tautline
 {
 namespace
 {
-/// Points so many cells away from a wanting face move, at first and at most.
+/// Points within this many cells of a deficient face move, initially and at most.
 constexpr int FirstLayers = 2, MostLayers = 8;
-/// Cells so many cells away from an inverted one are untangled first.
+/// Cells within this many cells of an inverted one are untangled first.
 constexpr int UntangledLayers = 3;
-/// Points that are one above the other are so up to this part of the extent of the mesh.
+/// Opposite points of a layer match up to this fraction of the extent of the mesh.
 constexpr double LayerTolerance = 1e-9;
-/// Rounds without a better result before the search ends.
+/// The number of rounds without a better result before the search ends.
 constexpr int MostFailures = 4;
-/// After a round without one, targets are closer to the ideal by this factor.
+/// After a round without a better result, targets are tightened by this factor.
 constexpr double Tightening = 0.9;
-/// Of the displacement of a round: tried in turn.
+/// Fractions of the displacement of a round that are tried in turn.
 constexpr std::array<double, 4> Fractions = { 1.0, 0.5, 0.25, 0.1 };
-/// Near faces that would be worse, points go this part of the way, then its square, then nowhere.
+/// Near faces that would get worse, points move by this fraction of the displacement, then its
+/// square, then not at all.
 constexpr double Backtracking = 0.3;
-/// Times that faces may be found worse before a round is given up.
+/// The number of times that faces may get worse before a round is abandoned.
 constexpr int MostBacktracks = 8;
-/// The energy is at least 0: the first step is to promise no more than this part of it.
+/// The energy is at least 0: the first step must not predict a decrease of more than this fraction
+/// of it.
 constexpr double FirstDecrease = 0.1;
-/// Delta of the energy of inverted cells, over the smallest V / V0, and at least.
+/// Delta of the energy for inverted cells, relative to the smallest V / V0, and its minimum.
 constexpr double DeltaPart = 0.5, LeastDelta = 1e-3;
-/// While cells are inverted, the energy is one of volumes; angles keep it regular.
+/// While cells are inverted, the energy is dominated by volumes, with angles as regularization.
 constexpr double UntanglingShrinking = 0.5, UntanglingPower = 1, UntanglingWeight = 10;
 
-/// How far a mesh is from the targets.
+/// The distance of a mesh from the targets.
 struct Want
 {
-  Index faces = 0;    ///< beyond a target or of an inverted cell
-  Index inverted = 0; ///< with a tetrahedron of no positive volume; of untangleOnly: invalid cells
-  double excess = 0;  ///< sum of what is beyond, relative to the targets
+  Index faces = 0; ///< number of faces beyond a target or of an inverted cell
+  /// number of cells with a tetrahedron without positive volume; for untangleOnly: invalid cells
+  Index inverted = 0;
+  double excess = 0; ///< sum of the excesses, relative to the targets
   std::vector<Index> list;
 };
 
@@ -52,7 +55,7 @@ bool isBetter(const Want& a, const Want& b)
   return a.inverted != b.inverted ? a.inverted < b.inverted : a.excess < b.excess;
 }
 
-/// The faces of invalid cells, which `inverted` counts.
+/// Counts the faces of invalid cells, and the invalid cells in `inverted`.
 Want invalidCells(const FaceMesh& mesh, const FaceMeasures& measures)
 {
   const std::vector<signed char> validity = measures.validity();
@@ -102,7 +105,7 @@ Want wantOf(const FaceMesh& mesh, const FaceMeasures& measures, const ImproveFac
   return want;
 }
 
-/// Whether the values of a check are bad above its limit, or below; of counts neither.
+/// Whether the values of a check are bad above or below its limit; for counts, neither.
 bool isLargeBad(MeshCheckKind kind)
 {
   return kind == MeshCheckKind::NonOrthogonality || kind == MeshCheckKind::FaceSkewness ||
@@ -120,14 +123,16 @@ bool isSmallBad(MeshCheckKind kind)
     kind == MeshCheckKind::VolumeRatio;
 }
 
-/// Whether no check is worse: in how much offends, and in the worst value beyond a limit.
+/// Whether no check is worse, in the number of offending items and in the worst value beyond a
+/// limit.
 bool isNoWorse(const MeshCheckReport& after, const MeshCheckReport& before)
 {
   constexpr double rounding = 1e-9;
   for (std::size_t i = 0; i < after.checks.size(); ++i)
   {
     const MeshCheck &a = after.checks[i], &b = before.checks[i];
-    // Where faces are in a plane, rounding makes cells concave; the others do not count as failed.
+    // If faces are coplanar, rounding makes cells concave; the other loose checks do not count as
+    // failed.
     const bool loose = a.kind == MeshCheckKind::CellConcavity || a.onlyWarns;
     if (loose && b.offending > 0)
     {
@@ -162,7 +167,7 @@ bool isNoWorse(const MeshCheckReport& after, const MeshCheckReport& before)
 class FreePoints : public SmoothFunction
 {
 public:
-  /// @param axis, mates of one layer, see Improver
+  /// @param axis, mates for one layer, see Improver
   FreePoints(FaceEnergy& energy, const ConstrainedPoints& constrained,
     const std::vector<Vec3>& normals, const std::vector<double>& lengths, int axis,
     const std::vector<Index>& mates, std::vector<double>& points)
@@ -197,7 +202,7 @@ public:
       const Vec3 slides = this->along(free[i], g);
       std::copy(slides.begin(), slides.end(), gradient + 3 * i);
     }
-    // Both of a pair have the same mean gradient, in their plane, and so the same motion.
+    // Both points of a pair have the same mean gradient, in their plane, and thus the same motion.
     for (std::size_t i = 0; std::isfinite(value) && i < this->MatePlaces.size(); ++i)
     {
       const auto mate = static_cast<std::size_t>(this->MatePlaces[i]);
@@ -211,7 +216,7 @@ public:
     return value;
   }
 
-  /// The inverse of a Hessian of a size over the square of the lengths.
+  /// The inverse of a model Hessian: a constant over the squared lengths.
   bool precondition(const double* r, double* z) override
   {
     const std::vector<Index>& free = this->Energy.freePoints();
@@ -226,8 +231,8 @@ public:
     return true;
   }
 
-  /// Chooses the size of that Hessian, 1 or more, so that the first step promises a part of the
-  /// energy. High powers of faces far beyond their targets have larger Hessians.
+  /// Chooses the constant of this Hessian, 1 or more, so that the first step predicts a decrease by
+  /// a fraction of the energy. High powers for faces far beyond their targets have larger Hessians.
   void scaleAt(const std::vector<double>& x)
   {
     std::vector<double> gradient(x.size()), step(x.size());
@@ -259,11 +264,11 @@ private:
   const std::vector<double>& Lengths;
   int Axis;
   double Scale = 1;
-  std::vector<Index> MatePlaces; ///< per free point that of its mate among them; or empty
+  std::vector<Index> MatePlaces; ///< per free point: the position of its mate among them; or empty
   std::vector<double>& Points;
 };
 
-/// Elements that stand for a part of a mesh, to be untangled.
+/// Elements that represent a part of a mesh for untangling.
 class PartToUntangle
 {
 public:
@@ -281,7 +286,7 @@ public:
     this->Offsets.push_back(static_cast<Index>(this->Connectivity.size()));
   }
 
-  /// The places of the points afterward. @param options but for the constraints
+  /// The final positions of the points. @param options without the constraints
   std::vector<double> untangle(UntangleOptions options) const
   {
     MeshView view;
@@ -295,7 +300,7 @@ public:
     return tautline::untangle(Mesh(view), options).points;
   }
 
-  /// Points that are of the mesh: number here, and there.
+  /// Points of the mesh: local number, and number in the mesh.
   std::vector<std::pair<Index, Index>> original;
 
 private:
@@ -309,7 +314,7 @@ Vec3 placeOf(const std::vector<double>& points, Index point)
   return { points[3 * point], points[3 * point + 1], points[3 * point + 2] };
 }
 
-/// Places of the points, and what was found there.
+/// The positions of the points, and their evaluation.
 struct Placement
 {
   std::vector<double> points;
@@ -364,9 +369,10 @@ private:
   ConstrainedPoints Constrained;
   std::vector<double> Start;
   std::vector<char> Movable;
-  int Axis = -1;               ///< across one layer of cells
-  std::vector<Index> Mates;    ///< of such a layer, per point: that on the other side; else empty
-  std::vector<Vec3> Normals;   ///< of points in a band, where they are
+  int Axis = -1; ///< perpendicular to one layer of cells
+  /// for such a layer, per point: the point on the other side; otherwise empty
+  std::vector<Index> Mates;
+  std::vector<Vec3> Normals;   ///< of points in a band, at their current positions
   std::vector<double> Lengths; ///< of the shortest edge of each point
 };
 
@@ -385,7 +391,7 @@ void Improver::findMovable()
     this->Movable[point] = used[point] && layered &&
       (this->Constrained.freedom(point) != Freedom::None || this->Constrained.band(point) >= 0);
   }
-  // What belongs together would move apart, and a border between patches would move.
+  // Otherwise corresponding points would separate, and borders between patches would move.
   constexpr int none = -1;
   std::vector<std::array<int, 2>> patchesOf(this->Mesh.points, { none, none });
   for (int number = 0; number < static_cast<int>(this->Mesh.patches.size()); ++number)
@@ -408,7 +414,7 @@ void Improver::findMovable()
       }
       else
       {
-        // On a sharp edge between two patches a point slides along the border.
+        // On a sharp edge between two patches, a point slides along the border.
         const bool third = known[1] != none && known[1] != number;
         known[1] = number;
         this->Movable[point] =
@@ -420,8 +426,8 @@ void Improver::findMovable()
 }
 
 //------------------------------------------------------------------------------
-/// Of one layer of cells between "empty" patches: the axis across it, and for each point of the one
-/// side that of the other, which moves with it.
+/// For one layer of cells between "empty" patches: finds the axis perpendicular to it and, for each
+/// point on one side, the point on the other side, which moves with it.
 void Improver::findMates()
 {
   if (std::none_of(this->Mesh.patches.begin(), this->Mesh.patches.end(),
@@ -476,7 +482,7 @@ void Improver::findMates()
   this->Axis = axis;
   for (Index point = 0; point < this->Mesh.points; ++point)
   {
-    // Points without a counterpart right across stay.
+    // Points without an exact counterpart are fixed.
     this->Movable[point] = mates[point] >= 0;
   }
   this->Mates = std::move(mates);
@@ -506,7 +512,7 @@ void Improver::findLengths()
 }
 
 //------------------------------------------------------------------------------
-/// The cells that are so many cells away from the faces.
+/// The cells within this many cells of the faces.
 std::vector<char> Improver::cellsNear(const std::vector<Index>& faces, int layers) const
 {
   std::vector<char> points(this->Mesh.points, 0), cells(this->Mesh.cells, 0);
@@ -562,7 +568,7 @@ std::vector<char> Improver::near(const std::vector<Index>& faces, int layers) co
   {
     points[point] = points[point] && this->Movable[point];
   }
-  // Of two that move together, both or none.
+  // Mark both or none of two points that move together.
   for (Index point = 0; !this->Mates.empty() && point < this->Mesh.points; ++point)
   {
     const Index mate = this->Mates[point];
@@ -576,8 +582,8 @@ std::vector<char> Improver::near(const std::vector<Index>& faces, int layers) co
 }
 
 //------------------------------------------------------------------------------
-/// Flags the points of faces and cells that fail a check that they did not fail before; false if
-/// there are none.
+/// Flags the points of faces and cells that fail a check they passed before; false if there are
+/// none.
 bool Improver::markWorse(
   const MeshCheckReport& now, const MeshCheckReport& before, std::vector<char>& points) const
 {
@@ -615,7 +621,7 @@ bool Improver::markWorse(
 }
 
 //------------------------------------------------------------------------------
-/// Puts points in a band back on their parts.
+/// Moves points in a band back onto their parts.
 void Improver::placeOnParts(const std::vector<double>& from, std::vector<double>& points) const
 {
   for (Index point = 0; point < this->Mesh.points; ++point)
@@ -631,7 +637,7 @@ void Improver::placeOnParts(const std::vector<double>& from, std::vector<double>
 }
 
 //------------------------------------------------------------------------------
-/// Points that minimize the energy near the faces that are wanting.
+/// The points that minimize the energy near deficient faces.
 std::vector<double> Improver::round(const std::vector<double>& from, const Want& want, int layers,
   double tightness, ImproveFacesResult& result)
 {
@@ -695,7 +701,7 @@ std::vector<double> Improver::round(const std::vector<double>& from, const Want&
 }
 
 //------------------------------------------------------------------------------
-/// Not even rounding separates the two sides of a layer where they have moved.
+/// Removes rounding differences between the moved points on the two sides of a layer.
 void Improver::matchMates(std::vector<double>& points) const
 {
   const auto moved = [&](Index point)
@@ -728,7 +734,7 @@ Placement Improver::place(std::vector<double> points) const
 }
 
 //------------------------------------------------------------------------------
-/// Points a fraction of the way from some places to others.
+/// Interpolates the points between two sets of positions.
 std::vector<double> Improver::between(const std::vector<double>& from,
   const std::vector<double>& to, const std::vector<double>& fractions) const
 {
@@ -743,7 +749,8 @@ std::vector<double> Improver::between(const std::vector<double>& from,
 }
 
 //------------------------------------------------------------------------------
-/// Goes as far to other places as is better, whatever the checks say; false if nowhere.
+/// Moves toward other positions as far as the result improves, regardless of the checks; false if
+/// it never improves.
 bool Improver::findBetter(Placement& at, const std::vector<double>& to) const
 {
   for (const double fraction : Fractions)
@@ -760,7 +767,7 @@ bool Improver::findBetter(Placement& at, const std::vector<double>& to) const
 }
 
 //------------------------------------------------------------------------------
-/// The same, less far or not at all near faces that would be worse than before.
+/// The same, but moves less or not at all near faces that would get worse.
 bool Improver::findNoWorse(
   Placement& at, const std::vector<double>& to, const MeshCheckReport& before) const
 {
@@ -792,11 +799,12 @@ bool Improver::findNoWorse(
 }
 
 //------------------------------------------------------------------------------
-/// The cells as tetrahedra of their centers and fans of their faces. @param cells one flag per cell
+/// Represents the cells by tetrahedra of their centers and fans of their faces. @param cells one
+/// flag per cell
 PartToUntangle Improver::solidPart(const std::vector<char>& cells) const
 {
   PartToUntangle part;
-  // A point beside other cells stays.
+  // A point next to other cells is fixed.
   std::vector<char> stays(this->Mesh.points, 0);
   std::vector<Index> local(this->Mesh.points, -1);
   const auto has = [&](Index cell) { return cells[cell] != 0; };
@@ -823,7 +831,7 @@ PartToUntangle Improver::solidPart(const std::vector<char>& cells) const
   {
     if (local[point] < 0)
     {
-      // What slides follows in rounds.
+      // Sliding points follow in later rounds.
       const bool moves =
         this->Movable[point] && !stays[point] && this->Constrained.freedom(point) == Freedom::Space;
       local[point] = part.add(placeOf(this->Start, point), !moves);
@@ -856,8 +864,8 @@ PartToUntangle Improver::solidPart(const std::vector<char>& cells) const
 }
 
 //------------------------------------------------------------------------------
-/// One layer as its polygons in the plane; those of more than four corners are divided into
-/// triangles about a point of their own.
+/// Represents one layer by its polygons in the plane; polygons with more than four corners are
+/// divided into triangles around an extra point.
 PartToUntangle Improver::layerPart() const
 {
   PartToUntangle part;
@@ -890,7 +898,7 @@ PartToUntangle Improver::layerPart() const
       {
         continue;
       }
-      // Seen from inside, as the normal points out of the low side.
+      // As seen from inside, because the normal points out of the low side.
       std::vector<Index> polygon(size);
       Vec3 center = { 0, 0, 0 };
       for (Index k = 0; k < size; ++k)
@@ -914,8 +922,8 @@ PartToUntangle Improver::layerPart() const
 }
 
 //------------------------------------------------------------------------------
-/// The start, untangled as elements are, near inverted cells. What is left has tetrahedra that do
-/// not overlap; those with the centers of cells and faces follow in rounds.
+/// The start after untangling the elements near inverted cells. The result has tetrahedra that do
+/// not overlap; tetrahedra with the centers of cells and faces follow in later rounds.
 std::vector<double> Improver::untangled(const Want& want) const
 {
   const bool layer = this->Axis >= 0;
@@ -935,7 +943,7 @@ std::vector<double> Improver::untangled(const Want& want) const
       points[3 * point + (layer ? (this->Axis + 1 + c) % 3 : c)] = found[3 * local + c];
     }
   }
-  // The other side follows, and has lower or higher numbers.
+  // The other side follows; it may have lower or higher numbers.
   for (const auto& [local, point] : part.original)
   {
     const auto at = points.begin() + 3 * point;
@@ -950,7 +958,7 @@ std::vector<double> Improver::untangled(const Want& want) const
 }
 
 //------------------------------------------------------------------------------
-/// Untangled cells are valid and no more: minimizes the energy once where they were tangled.
+/// Untangled cells are only just valid: minimizes the energy once in the formerly tangled region.
 void Improver::smoothUntangled(Placement& at, const Want& tangled, ImproveFacesResult& result)
 {
   Placement smooth = this->place(this->round(at.points, tangled, FirstLayers, 1, result));
@@ -967,7 +975,7 @@ ImproveFacesResult Improver::run()
   const Stopwatch watch;
   ImproveFacesResult result;
   Placement at = this->place(this->Start);
-  Placement good = at; // the best of which no check is worse
+  Placement good = at; // the best placement without a worse check
   result.before = at.report;
   result.wantingBefore = at.want.faces;
   const auto finish = [&](StopReason reason)
@@ -982,7 +990,7 @@ ImproveFacesResult Improver::run()
   {
     return finish(StopReason::NoFreeVertices);
   }
-  // Whether `at` is `good`; a tangled mesh may take other faults in passing.
+  // Whether `at` is `good`; a tangled mesh may temporarily fail other checks.
   bool isGood = true;
   const auto accept = [&]
   {

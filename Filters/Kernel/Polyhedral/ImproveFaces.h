@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ImproveFaces.h
- * @brief Moves points so that a mesh of finite volumes passes the checks of OpenFOAM's checkMesh.
+ * @brief Moves points so that a finite-volume mesh passes the checks of OpenFOAM's checkMesh.
  *
- * Only points near faces that are beyond the targets move. Where cells are inverted, untangle()
- * comes first, on tetrahedra of the centers of cells and fans of their faces, or, of one layer, on
- * its polygons. Then the points minimize the energy of FaceEnergy.h by L-BFGS, in rounds; near
- * faces that would be worse in a check, they go a part of the way, or stay. What the boundary may
- * do is that of BoundaryConstraints. Points of coupled patches, and where three patches meet or two
- * in one plane, stay; so do those of "empty" patches, unless these are the sides of one layer of
- * cells, whose points move together.
+ * Only points near faces beyond the targets move. If cells are inverted, untangle() is called
+ * first, on tetrahedra of the cell centers and fans of their faces or, for one layer, on its
+ * polygons. Then the energy of FaceEnergy.h is minimized by L-BFGS, in rounds; near faces that
+ * would fail a check, points move only part of the way or not at all. The boundary moves according
+ * to BoundaryConstraints. Points of coupled patches, and points where three patches or two coplanar
+ * patches meet, are fixed, as are points of "empty" patches, unless these are the sides of one
+ * layer of cells, whose points move together.
  *
  * The result is never worse: no check that can fail has more offending faces or cells than in the
  * input, nor a worse value beyond its limit. The concavity of cells and the checks that only warn
- * (short edges, concave and warped faces) count like this where nothing offends in the input: of
- * faces in one plane, concavity is a matter of rounding.
+ * (short edges, concave and warped faces) are guarded in the same way if nothing offends in the
+ * input: for coplanar faces, concavity depends on rounding.
  */
 #ifndef tautline_ImproveFaces_h
 #define tautline_ImproveFaces_h
@@ -29,18 +29,19 @@ namespace tautline
 {
 struct ImproveFacesOptions
 {
-  /// Faces are to have at most this non-orthogonality, degrees, and this skewness.
+  /// The targets: the maximum non-orthogonality, in degrees, and skewness of faces.
   double angle = 65, skewness = 3.5;
-  /// The faces of cells that are not valid alone are wanting, and other checks may become worse.
+  /// Whether only the faces of invalid cells are deficient, and other checks may get worse.
   bool untangleOnly = false;
-  bool patchesStay = false;  ///< the points of patches, but for "empty" ones of a layer, stay
+  /// whether the points of patches, except "empty" ones of a layer, are fixed
+  bool patchesStay = false;
   int rounds = 40;           ///< at most
   int iterations = 40;       ///< of L-BFGS in a round, at most
   double maximumSeconds = 0; ///< of wall time; 0: no limit
   FaceConvention convention = FaceConvention::Esi;
   MeshCheckFacts facts;
   int threads = 0;
-  /// After each round, with the fraction of the way that is certainly done; false ends it.
+  /// Called after each round with a lower bound of the fraction done; false ends the improvement.
   std::function<bool(int round, double fraction)> proceed;
 };
 
@@ -57,9 +58,9 @@ struct ImproveFacesResult
 /**
  * @brief Improves a mesh.
  * @param points 3 coordinates per point of the mesh
- * @param solid a mesh of volumes whose first points are those of `mesh`, with the same boundary:
+ * @param solid a volume mesh whose first points are the points of `mesh`, with the same boundary:
  * tetrahedra of its cells, for the constraints
- * @param constraints of the points of `solid`; those beyond the points of `mesh` do not count
+ * @param constraints for the points of `solid`; constraints beyond the points of `mesh` are ignored
  */
 TAUTLINE_KERNEL_EXPORT ImproveFacesResult improveFaces(const FaceMesh& mesh, const double* points,
   const Mesh& solid, const BoundaryConstraints& constraints, const ImproveFacesOptions& options);

@@ -13,7 +13,7 @@ namespace
 {
 constexpr int InnerEnds = static_cast<int>(angleBins.size()) - 2;
 
-/// Counts of one chunk: how many angles there are, and how many exceed each inner end of a bin.
+/// The counts of one chunk: the number of angles, and the number above each inner end of a bin.
 struct AngleCounts
 {
   Index angles = 0;
@@ -37,9 +37,9 @@ struct AngleCounter
   }
 
   /**
-   * Counts the angle with this cosine times the root of lengths2 in the lanes of `use`; in those of
-   * `reflex` it is beyond every end. An angle exceeds an end if its cosine is smaller, and so if
-   * its signed square is. (Set bits are -1.)
+   * Counts the angle with this cosine times the root of lengths2 in the lanes of `use`; in the
+   * lanes of `reflex`, it is beyond every end. An angle exceeds an end if its cosine, and therefore
+   * its signed square, is smaller. (Set bits are -1.)
    */
   void add(Packet product, Packet lengths2, Mask use, Mask reflex)
   {
@@ -67,7 +67,7 @@ struct AngleCounter
   }
 };
 
-/// The normal of a face, or of a 2D cell: of a quadrilateral, of its diagonals.
+/// The normal of a face or of a 2D cell; for a quadrilateral, from its diagonals.
 void faceNormal(const CellVertices& batch, const int* n, int size, Packet* normal)
 {
   Packet u[3], v[3];

@@ -16,15 +16,15 @@ namespace tautline
 {
 struct ElementTable;
 
-/// Everything a batch evaluator needs that is the same for all batches of a block.
+/// The data for a batch evaluator that are the same for all batches of a block.
 struct BatchContext : CellSource
 {
   const EvaluationOptions* options = nullptr;
   bool largerIsBetter = false;
-  bool scaleInvariant = false;         ///< the metric does not depend on the size of T
-  int lengthPower = 0;                 ///< of metrics that are not functions of T: their unit
+  bool scaleInvariant = false;         ///< whether the metric is independent of the size of T
+  int lengthPower = 0;                 ///< for metrics that are not functions of T: their unit
   const UserMetric* user = nullptr;    ///< evaluates a metric that is not built in
-  const ElementTable* table = nullptr; ///< of a metric that is evaluated for many elements at once
+  const ElementTable* table = nullptr; ///< for a metric that is evaluated for many elements at once
 };
 
 /// Cells and their vertices, with the values and gradients that an evaluator finds.
@@ -32,13 +32,13 @@ struct Batch : CellVertices
 {
   Packet value;
   Packet gradient[MaxNodes][3];
-  /// 1 where a node is the vertex that moves, else 0. If set, an evaluator of a user's metric adds
-  /// up the gradients of these nodes and puts the sum in place of that of the first node.
+  /// 1 if a node is the moving vertex, otherwise 0. If set, an evaluator of a user metric sums the
+  /// gradients of these nodes and stores the sum as the gradient of the first node.
   const Packet* moving = nullptr;
 };
 
-/// Replaces values that are not finite: by 0, or by NaN where a user's metric has none, which an
-/// objective must not take for a good one.
+/// Replaces nonfinite values by 0, or by NaN if a user metric is undefined, because an objective
+/// must not treat 0 as a good value.
 inline void replaceNonFinite(const BatchContext& context, Batch& batch)
 {
   const Packet finite = finiteOrZero(batch.value);
@@ -59,7 +59,7 @@ inline Packet timesUnit(const CellVertices& batch, Packet x, int power)
 
 using BatchEvaluator = void (*)(const BatchContext&, Batch&);
 
-/// The evaluators of a metric; null where it is not defined.
+/// The evaluators of a metric; null if it is undefined.
 struct MetricCode
 {
   BatchEvaluator value2D = nullptr;
@@ -71,7 +71,7 @@ struct MetricCode
 MetricCode targetMetricCode(Metric metric);
 MetricCode simplexMetricCode(Metric metric);
 MetricCode cellMetricCode(Metric metric);
-/// Those of cellMetricCode() that work on packets.
+/// The evaluators of cellMetricCode() that work on packets.
 MetricCode extremalMetricCode(Metric metric);
 /// For metrics that were registered: of T, and of the corners.
 MetricCode userTargetMetricCode(bool singular);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CellMetrics.cxx
- * @brief Metrics of whole cells: lengths, angles, sizes. Scalar code, one function a metric.
+ * @brief Metrics of whole cells: lengths, angles, sizes. Scalar code, one function per metric.
  *
- * A function returns the value and, on request, adds the gradient; where an extremum is taken it is
- * the gradient of the extremal term. Those that take most time are in ExtremalMetrics.cxx. Facts in
- * MetricRegistry.cxx.
+ * A function returns the value and, on request, adds the gradient; for an extremum, it is the
+ * gradient of the extremal term. The most expensive functions are in ExtremalMetrics.cxx, the facts
+ * in MetricRegistry.cxx.
  */
 #include "Batch.h"
 
@@ -85,7 +85,7 @@ struct FaceNormal
 
 constexpr int allNodes[MaxFaceNodes] = { 0, 1, 2, 3 };
 
-/// Sign of a 2D cell: against the mesh's plane, or + on a surface.
+/// The sign of a 2D cell: relative to the plane of the mesh, or + on a surface.
 double cellSign(const Cell& cell, const FaceNormal& face)
 {
   return cell.planar && dot(face.normal, cell.normal) < 0 ? -1.0 : 1.0;
@@ -148,7 +148,7 @@ double size(const Cell& cell, Gradient g)
 }
 
 //------------------------------------------------------------------------------
-/// Ratio of two lengths |a| / |b| with its derivatives by a and b.
+/// Ratio of two lengths |a| / |b| with its derivatives with respect to a and b.
 double lengthRatio(const Vec3& a, const Vec3& b, Vec3* da, Vec3* db)
 {
   const double la = norm(a), lb = norm(b);

@@ -11,7 +11,7 @@ Packet combine(
   {
     anyNegative |= negative[s];
   }
-  // In a cell with inverted corners only these count.
+  // In a cell with inverted corners, only these are used.
   Packet active[MaxNodes], count = {};
   for (int s = 0; s < samples; ++s)
   {
@@ -34,7 +34,7 @@ Packet combine(
       Packet worst = broadcast(-HUGE_VAL);
       for (int s = 0; s < samples; ++s)
       {
-        // The first of equals is the active one.
+        // The first of equal values is the active one.
         const Mask better = (sign * q[s] > worst) & (active[s] > 0.0);
         worst = select(better, sign * q[s], worst);
         for (int e = 0; e < s; ++e)
@@ -72,7 +72,7 @@ Packet combine(
       break;
     }
   }
-  // A user's formula may have no value at a corner: the cell has none then.
+  // A user formula may be undefined at a corner: then it is undefined for the cell.
   for (int s = 0; s < samples && context.user; ++s)
   {
     result += select(active[s] > 0.0, 0.0 * q[s], Packet{});

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CombineCorners.h
- * @brief The value of a cell from those of its corners.
- * Internal: not installed.
+ * @brief Combines the values of the corners of a cell. Internal: not installed.
  */
 #ifndef tautline_CombineCorners_h
 #define tautline_CombineCorners_h
@@ -12,8 +11,9 @@
 namespace tautline
 {
 /**
- * @brief The value Q of cells from those of their corners, as EvaluationOptions::combination says.
- * @param negative the corners that are inverted: of a cell that has some, only these count
+ * @brief The value Q of cells from the values of their corners, according to
+ * EvaluationOptions::combination.
+ * @param negative the inverted corners; if a cell has any, only these are used
  * @param weights set to dQ/dq of each corner
  */
 Packet combine(

@@ -73,7 +73,7 @@ void compareMetric(const MetricInfo& info, int dimension, const CellValues& befo
   const CellValues& after, double tolerance, signed char* change, MetricChange& total)
 {
   const double ideal = info.ideal(dimension);
-  // Changes are relative to the value; near an ideal value of 0 without unit, to 1.
+  // Changes are relative to the value or, near a unitless ideal value of 0, to 1.
   const double smallest = ideal == 0 && info.unit[0] == '\0' ? 1.0 : 0.0;
   const int sense = info.direction == Direction::LargerIsBetter ? 1
     : info.direction == Direction::SmallerIsBetter              ? -1
@@ -81,7 +81,7 @@ void compareMetric(const MetricInfo& info, int dimension, const CellValues& befo
   auto changeOf = [&](Index i)
   {
     const signed char was = before.validity[i], is = after.validity[i];
-    // A change of validity takes precedence; values compare only between elements of equal
+    // A change of validity takes precedence; values are only compared between elements of equal
     // validity.
     if (was != is)
     {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Compare.h
- * @brief What changed between two meshes of equal connectivity.
+ * @brief Compares two meshes of equal connectivity.
  */
 #ifndef tautline_Compare_h
 #define tautline_Compare_h
@@ -12,10 +12,10 @@
 
 namespace tautline
 {
-/// Names the first difference of two meshes in points, cells or connectivity; empty if none.
+/// Describes the first difference of two meshes in points, cells or connectivity; empty if none.
 TAUTLINE_KERNEL_EXPORT std::string connectivityDifference(const Mesh& before, const Mesh& after);
 
-/// Smallest, largest and mean value; can be added to, block after block.
+/// Smallest, largest and mean value; can be accumulated block after block.
 struct ValueSummary
 {
   Index count = 0;
@@ -25,7 +25,7 @@ struct ValueSummary
   double mean() const { return this->count > 0 ? this->sum / static_cast<double>(this->count) : 0; }
 };
 
-/// What became of one metric; can be added to, block after block.
+/// The change of one metric; can be accumulated block after block.
 struct MetricChange
 {
   Index better = 0, worse = 0, equal = 0;
@@ -36,13 +36,13 @@ struct MetricChange
  * @brief Finds for each cell whether its metric became better (1), worse (-1) or neither (0), and
  * adds up the counts.
  *
- * Validity comes first: a cell that becomes valid is better, one that becomes degenerate or
- * inverted is worse. Of two valid cells, and of two inverted ones where the metric orders these
- * (InvertedValue::Larger), the values decide, by the direction of the metric. They are equal if
- * they differ by no more than `tolerance` times the larger magnitude; for metrics without a unit
- * whose ideal value is 0, times 1 if that is more. A neutral metric, such as the size, makes no
- * valid cell better or worse. Cells the metric is not defined on, and those to skip, get 0 and are
- * not counted.
+ * Validity comes first: a cell that becomes valid is better, a cell that becomes degenerate or
+ * inverted is worse. For two valid cells, and for two inverted ones if the metric orders them
+ * (InvertedValue::Larger), the values decide according to the direction of the metric. Values are
+ * equal if they differ by at most `tolerance` times the larger magnitude or, for unitless metrics
+ * with the ideal value 0, by at most `tolerance`, if that is more. A neutral metric, such as the
+ * size, never makes a valid cell better or worse. Cells on which the metric is undefined and
+ * skipped cells get 0 and are not counted.
  * @param dimension 2 or 3
  */
 TAUTLINE_KERNEL_EXPORT void compareMetric(const MetricInfo& info, int dimension,

@@ -24,7 +24,7 @@ std::array<double, 5> ordered(const QualityLimits& limits)
   return { limits.ideal, limits.good, limits.warn, limits.fail, limits.worst };
 }
 
-/// 1 if larger values are worse, else -1.
+/// 1 if larger values are worse, otherwise -1.
 double signOf(const QualityLimits& limits)
 {
   return limits.worst > limits.ideal ? 1 : -1;
@@ -35,7 +35,7 @@ double signOf(const QualityLimits& limits)
   throw Error("Quality criteria, " + place + ": " + problem + ".");
 }
 
-/// Refuses values of another kind, and keys that are not known, so that no misspelt one is ignored.
+/// Rejects values of another kind and unknown keys, so that misspelled keys are not ignored.
 void checkObject(
   const Json& json, const std::string& place, std::initializer_list<const char*> known)
 {
@@ -52,7 +52,7 @@ void checkObject(
       {
         names += (names.empty() ? "" : ", ") + std::string(name);
       }
-      refuse(place, "there is no key \"" + item.key() + "\"; there are " + names);
+      refuse(place, "unknown key \"" + item.key() + "\"; available: " + names);
     }
   }
 }
@@ -70,7 +70,7 @@ std::string text(const Json& json, const std::string& place)
 {
   if (!json.is_string())
   {
-    refuse(place, "a text is expected");
+    refuse(place, "a string is expected");
   }
   return json.get<std::string>();
 }
@@ -104,7 +104,7 @@ QualityLimits parseLimits(const Json& json, const MetricInfo& info, const std::s
   }
   const bool rises = std::is_sorted(values.begin(), values.end());
   const bool falls = std::is_sorted(values.rbegin(), values.rend());
-  if (rises == falls) // neither, or all equal
+  if (rises == falls) // neither rising nor falling, or both
   {
     refuse(place, "ideal, good, warn, fail and worst must rise, or fall, throughout");
   }
@@ -160,7 +160,7 @@ void parseTypes(
     if (found == types.end())
     {
       refuse(at,
-        "there is no such cell type; there are all, triangle, quadrilateral, tetrahedron, "
+        "unknown cell type; available: all, triangle, quadrilateral, tetrahedron, "
         "hexahedron, wedge, pyramid, polygon and polyhedron");
     }
     const int type = static_cast<int>(found - types.begin());
@@ -221,7 +221,7 @@ QualityCriterion parseCriterion(const Json& json, const std::string& place)
   }
   else
   {
-    refuse(place, "there is no metric \"" + name + "\"; see the list of metrics");
+    refuse(place, "unknown metric \"" + name + "\"; see the list of metrics");
   }
   if (json.contains("weight"))
   {
@@ -262,7 +262,7 @@ QualityCriteria parse(const Json& json)
     if (std::count_if(result.criteria.begin(), result.criteria.end(),
           [&name](const QualityCriterion& c) { return c.name() == name; }) > 1)
     {
-      refuse(place, name + " has a criterion already");
+      refuse(place, name + " already has a criterion");
     }
     weights += result.criteria.back().weight;
   }
@@ -381,7 +381,7 @@ std::string presetCriteria(const std::string& name)
     }
     names += (names.empty() ? "" : ", ") + std::string(preset.name);
   }
-  throw Error("There are no preset quality criteria \"" + name + "\"; there are " + names + ".");
+  throw Error("Unknown preset quality criteria \"" + name + "\"; available: " + names + ".");
 }
 
 //------------------------------------------------------------------------------

@@ -4,16 +4,16 @@
  * @brief Quality criteria: limits per metric and cell type, grades of elements, one index, a
  * verdict.
  *
- * A criterion has five limits for a cell type, from the value of an ideal element to one that is as
- * bad as any: ideal, good, warn, fail, worst. An element whose value is beyond `warn` gets a
- * warning, one beyond `fail` fails; a value at a limit is still on its better side. Inverted and
- * degenerate elements fail, unless all criteria are metrics of finite volumes: these have measures
- * of their own for them.
+ * A criterion has five limits for a cell type, from the value of an ideal element to the worst:
+ * ideal, good, warn, fail, worst. An element whose value is beyond `warn` gets a warning, one
+ * beyond `fail` fails; a value at a limit belongs to the better side. Inverted and degenerate
+ * elements fail, unless all criteria are finite-volume metrics, which measure them in their own
+ * way.
  *
  * The penalty of a value is 0 at ideal, 1/4 at good, 1/2 at warn, 3/4 at fail and 1 at worst,
- * linear between and constant beyond. The quality index of an element is the mean of the penalties
- * of its criteria by their weights, 1 for an invalid element. The index of a mesh is the mean over
- * its elements: 0 is ideal, 1 the worst.
+ * linear between and constant beyond. The quality index of an element is the weighted mean of the
+ * penalties of its criteria, or 1 for an invalid element. The index of a mesh is the mean over its
+ * elements: 0 is ideal, 1 the worst.
  *
  * Criteria are written in JSON, for example
  *
@@ -26,10 +26,10 @@
  *
  * `metric` is also the name of a check of solvers (see ElementChecks.h): these are defined on all
  * types. `limits` is by cell type (triangle, quadrilateral, tetrahedron, hexahedron, wedge,
- * pyramid; of metrics of finite volumes also polygon and polyhedron) or "all" for those that are
- * not named and that the metric is defined on. `name`, `source`, a text or a list of its lines,
- * `weight` (1) and, at the top, `convention` ("esi" or "foundation": of face centers, see
- * FaceGeometry.h) may be left out.
+ * pyramid; for finite-volume metrics also polygon and polyhedron) or "all" for the other types on
+ * which the metric is defined. `name`, `source`, a text or a list of its lines, `weight` (1) and,
+ * at the top, `convention` ("esi" or "foundation": of face centers, see FaceGeometry.h) may be left
+ * out.
  */
 #ifndef tautline_Criteria_h
 #define tautline_Criteria_h
@@ -58,7 +58,7 @@ enum class Grade : signed char
 /// "passed", "warning", "failed" or "none".
 TAUTLINE_KERNEL_EXPORT const char* gradeName(Grade grade);
 
-/// The cell types that limits are for: those of topologies(), then polygons and polyhedra.
+/// The cell types that can have limits: the types of topologies(), then polygons and polyhedra.
 constexpr int NumberOfGradedTypes = NumberOfCellTypes + 2;
 
 /// The position of a VTK type among them, or -1.
@@ -72,7 +72,7 @@ struct QualityCriterion
   double weight = 1;
   std::array<std::optional<QualityLimits>, NumberOfGradedTypes> limits; ///< by gradedTypeIndex()
 
-  /// Of the metric or the check.
+  /// The name of the metric or the check.
   TAUTLINE_KERNEL_EXPORT const char* name() const;
   TAUTLINE_KERNEL_EXPORT const char* label() const;
 };
@@ -82,27 +82,27 @@ struct QualityCriteria
 {
   std::string name, source;
   std::string convention;                 ///< "esi", "foundation" or "": not stated
-  std::vector<QualityCriterion> criteria; ///< at least one, each of another metric
+  std::vector<QualityCriterion> criteria; ///< at least one, each with a different metric
 };
 
 /**
  * @brief Reads criteria.
  * @param json see above
  *
- * Throws Error, which names the place, for text that is not JSON, unknown keys, metrics or cell
- * types, metrics not defined on a cell type, limits that are not finite, do not rise or fall
- * throughout or do so against the direction of the metric, and weights that are negative or all 0.
+ * Throws Error, with the location, for text that is not JSON; unknown keys, metrics or cell types;
+ * metrics that are undefined on a cell type; limits that are not finite, not monotonic, or ordered
+ * against the direction of the metric; and weights that are negative or all 0.
  */
 TAUTLINE_KERNEL_EXPORT QualityCriteria parseCriteria(const std::string& json);
 
 /// The cells that criteria have limits for: "shells" (triangles, quadrilaterals), "solids" (the
-/// others) or "shells and solids"; "finite volumes" of criteria that are all metrics of these.
+/// others) or "shells and solids"; "finite volumes" if all criteria are finite-volume metrics.
 TAUTLINE_KERNEL_EXPORT std::string gradedCells(const QualityCriteria& criteria);
 
 /// The names of the presets.
 TAUTLINE_KERNEL_EXPORT const std::vector<std::string>& criteriaPresets();
 
-/// The JSON of a preset; throws Error, which lists the names, for another name.
+/// The JSON of a preset; throws Error, listing the names, for another name.
 TAUTLINE_KERNEL_EXPORT std::string presetCriteria(const std::string& name);
 
 /// The grade of a value.
@@ -111,7 +111,7 @@ TAUTLINE_KERNEL_EXPORT Grade gradeOf(const QualityLimits& limits, double value);
 /// The penalty of a value, 0 to 1.
 TAUTLINE_KERNEL_EXPORT double penaltyOf(const QualityLimits& limits, double value);
 
-/// Sums over elements; those of several parts of a mesh are added.
+/// Sums over elements; the sums of several parts of a mesh can be added.
 struct TAUTLINE_KERNEL_EXPORT CriteriaTotals
 {
   struct PerCriterion
@@ -119,27 +119,27 @@ struct TAUTLINE_KERNEL_EXPORT CriteriaTotals
     Index graded = 0, warned = 0, failed = 0; ///< valid elements with limits for their type
     double penalty = 0;                       ///< sum
   };
-  Index graded = 0, warned = 0, failed = 0; ///< elements; failed ones with the invalid ones
+  Index graded = 0, warned = 0, failed = 0; ///< elements; failed ones include invalid ones
   double index = 0;                         ///< sum
   std::vector<PerCriterion> criteria;       ///< as in QualityCriteria
 
-  /// Of the mesh: that of its worst element; None without an element.
+  /// The verdict on the mesh: the grade of its worst element; None without elements.
   Grade verdict() const;
-  /// The index of the mesh; 0 without an element.
+  /// The index of the mesh; 0 without elements.
   double meanIndex() const { return this->graded > 0 ? this->index / this->graded : 0.0; }
 };
 
 /**
  * @brief Grades the cells of a mesh.
- * @param criteria nothing else is graded
+ * @param criteria the criteria to grade
  * @param mesh its cell types
  * @param validity per cell, see Validity
- * @param uncounted nonzero: the cell does not count in the totals; may be null
+ * @param uncounted nonzero: the cell is excluded from the totals; may be null
  * @param skip nonzero: the cell gets no grade; may be null
- * @param values per criterion the values of its metric, one per cell
- * @param grades per cell a Grade, overwritten
- * @param indices per cell the quality index, overwritten; 0 without a grade
- * @param totals what the cells add
+ * @param values per criterion: the values of its metric, one per cell
+ * @param grades a Grade per cell, overwritten
+ * @param indices the quality index per cell, overwritten; 0 without a grade
+ * @param totals incremented by the contributions of the cells
  */
 TAUTLINE_KERNEL_EXPORT void gradeCells(const QualityCriteria& criteria, const Mesh& mesh,
   const signed char* validity, const unsigned char* uncounted, const unsigned char* skip,

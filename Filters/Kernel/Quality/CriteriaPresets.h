@@ -4,8 +4,8 @@
  * @brief The texts of the preset criteria.
  * Internal: not installed.
  *
- * The limits `warn` and `fail` are those of the source given; `ideal` is the value of the ideal
- * element, and `good` and `worst`, which have an effect on the quality index only, are chosen here.
+ * The limits `warn` and `fail` come from the stated source; `ideal` is the value of the ideal
+ * element, and `good` and `worst`, which only affect the quality index, are chosen here.
  */
 #ifndef tautline_CriteriaPresets_h
 #define tautline_CriteriaPresets_h
@@ -45,7 +45,7 @@ constexpr std::array<CriteriaPreset, 14> CriteriaPresetTexts = { {
   "source": [
     "ANSYS ICEM CFD help 2024 R2, 35.11.3 Checking the Skewness, Table 35.1, of 1 - skewness:",
     "excellent to 0.25, good to 0.5, fair to 0.75, poor to 0.98, bad (sliver) beyond; formula:",
-    "largest deviation of a face angle from that of the ideal face, over the largest possible" ],
+    "largest deviation of a face angle from the ideal face, over the largest possible" ],
   "criteria": [
     { "metric": "equiangle_skew", "weight": 1,
       "limits": { "all": { "ideal": 0, "good": 0.5, "warn": 0.75, "fail": 0.98, "worst": 1 } } }
@@ -79,7 +79,7 @@ constexpr std::array<CriteriaPreset, 14> CriteriaPresetTexts = { {
   "source": [
     "Altair OptiStruct 2021 help, CTETRA Element Checks and Default Bound Values: edge angle, the",
     "largest of |90 - angle between two faces| (degrees), limits of warnings (75) and, of CTETRA4,",
-    "of errors (87), as limits of the dihedral angles. Not here, as no metric has their",
+    "of errors (87), as limits of the dihedral angles. Omitted, as no metric has their",
     "definition: aspect ratio, skew and vertex angles of faces, collapse; and the other solids" ],
   "criteria": [
     { "metric": "min_angle", "weight": 1,
@@ -97,7 +97,7 @@ constexpr std::array<CriteriaPreset, 14> CriteriaPresetTexts = { {
     "Altair HyperMesh: the default criteria of the quality index of shells, the string array of",
     "*setqualitycriteria in command files of the versions 2021, 2022.3 and 2025; formulas: Altair",
     "HyperMesh 2024 help, Element Quality Calculations, HyperMesh, with the shortest edge as",
-    "length. Not here, as no metric has their definition: warpage, skew, Jacobian, taper, length" ],
+    "length. Omitted, as no metric has their definition: warpage, skew, Jacobian, taper, length" ],
   "criteria": [
     { "metric": "edge_ratio", "weight": 1,
       "limits": {
@@ -121,7 +121,7 @@ constexpr std::array<CriteriaPreset, 14> CriteriaPresetTexts = { {
     "elements: the threshold of its example, as the reference gives no default; an element beyond",
     "it fails; 2024 help, Element Quality Calculations, HyperMesh, Jacobian: at Gauss points",
     "values of 0.7 and above are generally acceptable, below it there is a warning; there is no",
-    "limit of failure, so that elements fail where it is negative. Not here, as no metric has",
+    "limit of failure, so that elements fail where it is negative. Omitted, as no metric has",
     "their definition: aspect ratio, warpage, skew, interior angles of faces, tetra collapse,",
     "volumetric skew and volumetric aspect ratio" ],
   "criteria": [
@@ -146,7 +146,7 @@ constexpr std::array<CriteriaPreset, 14> CriteriaPresetTexts = { {
     "Autodesk Nastran 2025 reference, section 5, geometry processor parameters TRIMINIATOL,",
     "TRIMAXIATOL, QUADMINIATOL, QUADMAXIATOL: default tolerances of warnings; there are none of",
     "errors by default, so that elements fail at 0 and 180 degrees; TRIMAXEPADTOL, QUADMAXEPADTOL",
-    "(30): edge-point angular deviation, whose formula the reference does not state. Not here, as",
+    "(30): edge-point angular deviation, whose formula the reference does not state. Omitted, as",
     "no metric has their definition: skew, taper, warping, edge-point length ratio, and angles of",
     "the faces of solids" ],
   "criteria": [
@@ -172,7 +172,7 @@ constexpr std::array<CriteriaPreset, 14> CriteriaPresetTexts = { {
     "TETFACEMINIATOL (5) and TETFACEMAXIATOL (170): default tolerances of the angles of faces",
     "(degrees); both are an equiangle skew of 55 / 60 = 110 / 120. There are no errors by default,",
     "so that elements fail at 1; TETMAXEPADTOL (30): edge-point angular deviation, whose formula",
-    "the reference does not state. Not here, as no metric has their definition: aspect ratio,",
+    "the reference does not state. Omitted, as no metric has their definition: aspect ratio,",
     "skew, edge-point length ratio; and the other solids, whose two tolerances are different",
     "skews" ],
   "criteria": [
@@ -190,8 +190,8 @@ constexpr std::array<CriteriaPreset, 14> CriteriaPresetTexts = { {
   "name": "ANSYS Mechanical APDL shells (triangles)",
   "source": [
     "ANSYS Mechanical APDL 2023 R2 command reference, SHPP, notes: maximum corner angle of a",
-    "triangle; formula: ANSYS Mechanical APDL theory reference, 12.1 Element Shape Testing. Not",
-    "here, as no metric has their definition: aspect ratio, parallel deviation, Jacobian ratio,",
+    "triangle; formula: ANSYS Mechanical APDL theory reference, 12.1 Element Shape Testing.",
+    "Omitted, as no metric has their definition: aspect ratio, parallel deviation, Jacobian ratio,",
     "warping factor. See skewness for ANSYS ICEM CFD" ],
   "criteria": [
     { "metric": "max_angle", "weight": 1,
@@ -207,7 +207,7 @@ constexpr std::array<CriteriaPreset, 14> CriteriaPresetTexts = { {
     "limit of the element quality, 0.05; below it an element fails. The element quality is the",
     "volume over the square root of the cube of the sum of the squares of the edges, 1 for the",
     "ideal element: in tetrahedra the mean ratio to the power 3/2, whose limit is 0.05 to the",
-    "power 2/3. Not here, as no metric has their definition: Jacobian ratio, aspect ratio; and the",
+    "power 2/3. Omitted, as no metric has their definition: Jacobian ratio, aspect ratio; and the",
     "other solids" ],
   "criteria": [
     { "metric": "mean_ratio", "weight": 1,

@@ -14,9 +14,9 @@ namespace tautline
 {
 namespace
 {
-/// The accuracy of certified metrics: absolute, and of small values relative to them.
+/// The accuracy of certified metrics: absolute, and for small values relative.
 constexpr double metricTolerance = 1e-3;
-/// Below this, the relative accuracy is more than the absolute one.
+/// Below this value, the relative accuracy is stricter than the absolute one.
 constexpr double smallMetric = 0.25;
 constexpr double smallestGap = 1e-8;
 
@@ -145,7 +145,7 @@ double combine(const EvaluationOptions& options, bool largerIsBetter, bool onlyN
     {
       worst = largerIsBetter ? std::min(worst, values[s]) : std::max(worst, values[s]);
       const double size = std::abs(values[s]);
-      // In units of the extreme value, so that high powers do not overflow.
+      // Scale by the extreme value, so that high powers do not overflow.
       unit = total == 0 ? size : largerIsBetter ? std::min(unit, size) : std::max(unit, size);
       total += weights[s];
       sum += weights[s] * values[s];
@@ -161,6 +161,7 @@ double combine(const EvaluationOptions& options, bool largerIsBetter, bool onlyN
     default:
       break;
   }
+  // Power mean of the magnitudes; with the sign of the mean.
   double powers = 0;
   for (std::size_t s = 0; s < count && unit > 0; ++s)
   {
@@ -249,6 +250,7 @@ void CurvedQuality::bound(
   const CurvedBlock& block, Metric metric, const signed char* validity, double* values) const
 {
   const double* points = this->TheMesh.view().points;
+  // The certified bound is a minimum: metrics that are reciprocals are bounded by their inverse.
   const bool reciprocal = metric == Metric::InverseMeanRatio || metric == Metric::ConditionNumber;
   forEachChunk(block.count(), this->Threads,
     [&](Index, Index begin, Index end)
@@ -348,7 +350,7 @@ void CurvedQuality::sample(const CurvedBlock& block, const MetricInfo& info,
           }
           if (validity[block.cells[i]] == Inverted)
           {
-            // The place of the smallest determinant, which the samples may have missed.
+            // Add the position of the smallest determinant, which the samples may have missed.
             const Vec3& at = this->Minima[block.cells[i]].at;
             simplices.add(samples.columnsAt(at, points, block.nodes[i]));
             all.push_back(-1);

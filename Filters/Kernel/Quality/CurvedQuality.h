@@ -3,21 +3,21 @@
  * @file CurvedQuality.h
  * @brief Quality metrics of cells of quadratic and higher order.
  *
- * evaluateMetric() measures these cells at their corners. Here the whole curved cell counts:
+ * evaluateMetric() measures these cells at their corners. Here, the whole curved cell is measured:
  * - min_jacobian: certified;
- * - scaled_jacobian: the certified minimum over the cell; of a simplex also over its corners;
+ * - scaled_jacobian: the certified minimum over the cell; for a simplex, also over its corners;
  * - imr, mean_ratio and condition_number with Combination::Worst: the certified worst value, from
  *   the minimum of the mean ratio and of the inverse condition number. The value is attained; the
- *   true worst one is worse by at most 0.1 %;
- * - all other functions of T = A W^-1 with the ideal target (also those that are registered), and
- *   these three with the other combinations: by quadrature, see ElementSamples.h: the mean over the
+ *   true worst value is worse by at most 0.1 %;
+ * - all other functions of T = A W^-1 with the ideal target (including registered ones), and these
+ *   three with the other combinations: by quadrature, see ElementSamples.h: the mean over the
  *   reference element, its power mean, or the worst sample. If the determinant is negative at some
- *   places, only these count, but for metrics that untangle; the place where it is smallest counts
- *   in a cell that is inverted;
+ *   points, only these are used, except for metrics that untangle; in an inverted cell, the point
+ *   with the smallest determinant is included;
  * - size: the area or volume of the curved cell.
  *
- * Not measured like this, and left at the corners: untangle_beta, targets other than the ideal
- * element, lengths and angles.
+ * Still measured at the corners: untangle_beta, targets other than the ideal element, lengths and
+ * angles.
  */
 #ifndef tautline_CurvedQuality_h
 #define tautline_CurvedQuality_h
@@ -27,12 +27,12 @@
 
 namespace tautline
 {
-/// How many invalid cells an examination at a few places would not have found.
+/// The numbers of invalid cells that a check at a few points would miss.
 struct MissedCells
 {
   Index curved = 0;              ///< certified cells
   Index invalid = 0;             ///< inverted or degenerate ones
-  Index atCorners = 0;           ///< invalid, but with a positive determinant at all corners
+  Index atCorners = 0;           ///< invalid cells with a positive determinant at all corners
   Index atIntegrationPoints = 0; ///< the same at all integrationPoints()
 };
 
@@ -50,24 +50,24 @@ public:
   /// The cells that are measured as curved ones.
   Index cells() const { return this->Count; }
 
-  /// Replaces the validity of the curved cells, and finds where their determinant is smallest.
+  /// Replaces the validity of the curved cells, and locates the minimum of their determinant.
   void certify(signed char* validity);
 
   /**
    * @brief Replaces the values of the curved cells; call certify() before.
-   * @param options as they were given to evaluateMetric()
-   * @return false: the metric is measured at the corners, and the values are left
+   * @param options as passed to evaluateMetric()
+   * @return false if the metric is measured at the corners; the values are then unchanged
    */
   bool measure(Metric metric, const EvaluationOptions& options, const signed char* validity,
     double* values) const;
-  /// Whether measure() does.
+  /// Whether measure() supports a metric.
   bool measures(Metric metric, const EvaluationOptions& options) const;
 
-  /// The reference coordinates where the determinant is smallest, and the point there: three each
-  /// per cell of the mesh. Other cells have 0 and their centers.
+  /// The reference coordinates of the smallest determinant, and the point there: three each per
+  /// cell of the mesh. For other cells: 0 and their centers.
   void places(double* reference, double* points) const;
 
-  /// @param skip nonzero: the cell does not count; may be null
+  /// @param skip nonzero: the cell is ignored; may be null
   MissedCells missed(const signed char* validity, const unsigned char* skip) const;
 
 private:

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file DualNumber.h
- * @brief A number with its derivatives: the formulas of a user's own metric are written in it.
+ * @brief A number with its derivatives, in which the formulas of user metrics are written.
  *
- * DualNumber<K> carries the derivatives by K variables through every operation (forward automatic
- * differentiation); DualNumber<0> is the value alone. It is a packet: one number for each of
- * several elements, so that a formula runs in the vector unit. That is why a comparison is no
- * `bool` and there is no `if` on a number: write select(x < y, a, b).
+ * DualNumber<K> propagates the derivatives with respect to K variables through every operation
+ * (forward automatic differentiation); DualNumber<0> is only the value. It is a packet with one
+ * number for each of several elements, so that formulas are vectorized. Therefore, a comparison is
+ * not a `bool`, and `if` cannot be used on a number: write select(x < y, a, b).
  *
- * Loops over entries or corners are best unrolled (`#pragma GCC unroll 3`): the derivatives that
- * are always 0 then cost nothing.
+ * Loops over entries or corners are best unrolled (`#pragma GCC unroll 3`): derivatives that are
+ * always 0 then cost nothing.
  *
- * Where a function is singular (1 / 0, sqrt of a negative number) value and derivatives are not
- * finite. Measured values are 0 then; an objective is infinite, so that no step leads there.
+ * Where a function is singular (1 / 0, sqrt of a negative number), the value and derivatives are
+ * not finite. Measured values are then 0; an objective is infinite, so that steps avoid it.
  */
 #ifndef tautline_DualNumber_h
 #define tautline_DualNumber_h
@@ -40,7 +40,7 @@ inline Mask isFinite(Packet x)
   return tautline::abs(x) <= std::numeric_limits<double>::max();
 }
 
-/// Of x > 0 and 0; NaN elsewhere.
+/// For x > 0 and 0; otherwise NaN.
 inline Packet cubeRoot(Packet x)
 {
   const Packet inverse = inverseCbrt(x);
@@ -49,8 +49,8 @@ inline Packet cubeRoot(Packet x)
   return select((x > 0.0) & isFinite(x), x * inverse * inverse, special);
 }
 
-/// A power of x > 0, as of std::pow() elsewhere, and its derivatives. If the exponent is one of
-/// few thirds, all are whole powers of the same number: x or its cube root.
+/// A power of x > 0 (otherwise as std::pow()) and its derivatives. If the exponent is a small
+/// multiple of 1/3, all are whole powers of the same number: x or its cube root.
 class Power
 {
 public:
@@ -108,7 +108,7 @@ struct DualNumber
   static constexpr int variables = Variables;
 
   Packet value;
-  Packet slope[Variables > 0 ? Variables : 1]; ///< unused where there are no variables
+  Packet slope[Variables > 0 ? Variables : 1]; ///< unused without variables
 
   DualNumber() = default;
   /// A constant.
@@ -135,7 +135,7 @@ struct DualNumber
     }
     return result;
   }
-  /// f(x), of which f and df/dx are given.
+  /// f(x) for given f and df/dx.
   static DualNumber chain(const DualNumber& x, Packet f, Packet derivative)
   {
     DualNumber result;
@@ -279,7 +279,7 @@ struct DualNumber
     return { a.value >= b.value };
   }
 
-  /// `yes` where the condition holds, else `no`.
+  /// `yes` where the condition holds, otherwise `no`.
   friend DualNumber select(DualMask condition, const DualNumber& yes, const DualNumber& no)
   {
     DualNumber result;
@@ -356,7 +356,7 @@ struct DualNumber
     }
     return result;
   }
-  /// x^exponent for x > 0, as std::pow() elsewhere; thirds of whole numbers are fast.
+  /// x^exponent for x > 0, otherwise as std::pow(); multiples of 1/3 are fast.
   friend DualNumber pow(const DualNumber& x, double exponent)
   {
     const dual_number::Power power(x.value, exponent);
@@ -364,8 +364,8 @@ struct DualNumber
   }
 };
 
-/// x y z of a point or vector. Its functions are inlined whatever their size: numbers would go
-/// through memory otherwise.
+/// x y z of a point or vector. Its functions are always inlined; otherwise numbers would pass
+/// through memory.
 template <class Number>
 using DualVector = std::array<Number, 3>;
 

@@ -37,7 +37,7 @@ constexpr auto Larger = Direction::LargerIsBetter;
 constexpr const char* hyperMesh =
   "Altair HyperMesh 2021 reference guide, *elementchecksettings, methods of Jacobian 0 to 3; 2024 "
   "help, Element Quality Calculations, HyperMesh: ratio of the smallest to the largest determinant";
-constexpr const char* quadraticOnly = "0 (ratio: 1) where an edge has no single middle node";
+constexpr const char* quadraticOnly = "0 (ratio: 1) if an edge has no single middle node";
 
 struct Edge
 {
@@ -47,7 +47,7 @@ struct Edge
 /// The edges with exactly one node inside.
 std::vector<Edge> edgesWithMiddle(const ElementType& type)
 {
-  // In the shape that is not collapsed, where edges are straight.
+  // In the uncollapsed shape, where edges are straight.
   std::vector<Vec3> places = type.coordinates();
   for (Vec3& p : places)
   {
@@ -107,7 +107,7 @@ double ratioOf(double least, double most)
   return largest > 0 ? least / largest : 0;
 }
 
-/// The places of ANSYS, see the note of the check.
+/// The points used by ANSYS, see the note of the check.
 ElementRule ansysPlaces(const ElementType& type)
 {
   ElementRule rule = cornersOf(type);
@@ -151,7 +151,7 @@ ElementRule placesOf(int check, const ElementType& type)
   }
 }
 
-/// From the determinants at the places of a check.
+/// The value from the determinants at the points of a check.
 double valueOf(int check, const ElementRule& rule, const std::vector<double>& determinants)
 {
   const auto [least, most] = std::minmax_element(determinants.begin(), determinants.end());
@@ -248,43 +248,42 @@ const std::vector<ElementCheckInfo>& elementChecks()
     { "jacobian_ratio", "Jacobian ratio, certified",
       "smallest determinant over the largest absolute one, in the whole element",
       "Gmsh, plugin AnalyseMeshQuality, minJ/maxJ, where the determinant is positive somewhere",
-      "on surfaces in space the largest one is that at the quadrature points", 1, Larger },
+      "on surfaces in space, the largest one is taken at the quadrature points", 1, Larger },
     { "jacobian_integration", "Jacobian at integration points",
       "smallest determinant over the largest absolute one, at the integration points", hyperMesh,
-      "method 0, its default, 0.7 and above is acceptable; HyperMesh has the same for Abaqus; its "
-      "points are not documented: here those of integrationPoints()",
+      "method 0, its default, 0.7 and above is acceptable; HyperMesh uses the same for Abaqus; "
+      "its points are not documented: here integrationPoints()",
       1, Larger },
     { "jacobian_corners", "Jacobian at corners",
-      "the same at the corners, of a pyramid at those of its base", hyperMesh, "method 1", 1,
-      Larger },
+      "the same at the corners; for a pyramid, at the corners of its base", hyperMesh, "method 1",
+      1, Larger },
     { "jacobian_nodes", "Jacobian at corners and middle nodes", "the same at all nodes", hyperMesh,
-      "method 2; here also at nodes inside faces and the element, where it has any", 1, Larger },
+      "method 2; here also at nodes inside faces and the element, if any", 1, Larger },
     { "jacobian_high_order", "Jacobian at high order points",
       "the same at the points of a rule of higher order", hyperMesh,
-      "method 3; its points are not documented: here those of quadratureOf()", 1, Larger },
+      "method 3; its points are not documented: here quadratureOf()", 1, Larger },
     { "ansys_jacobian_ratio", "Jacobian ratio of ANSYS",
-      "largest over smallest absolute determinant at some places; -100 if the signs differ",
+      "largest over smallest absolute determinant at some points; -100 if the signs differ",
       "ANSYS Mechanical APDL theory reference, 12.1 Element Shape Testing, Jacobian ratio",
-      "the table of places could not be verified; here: corners, of quadrilaterals also the "
-      "centroid, of hexahedra with middle nodes all nodes and the centroid, of pyramids the base "
-      "corners and a place near the apex",
+      "the table of points could not be verified; here: corners; for quadrilaterals also the "
+      "centroid; for hexahedra with middle nodes all nodes and the centroid; for pyramids the "
+      "base corners and a point near the apex",
       1, Smaller },
     { "calculix_jacobian", "Jacobian of CalculiX",
       "smallest determinant at the integration points, which must be positive",
       "CalculiX CrunchiX user's manual, C3D10: 4 integration points; message: nonpositive jacobian "
       "determinant",
-      "of other elements the points of integrationPoints()", 0, Larger },
+      "for other elements, integrationPoints() is used", 0, Larger },
     { "distortion", "Distortion of Verdict",
       "smallest determinant at the integration points times the volume of the reference element "
       "over the volume",
       "Knupp et al., The Verdict library reference manual, Sandia (2006), distortion",
-      "the volume is the mean determinant at these points; Verdict's rules of other elements than "
-      "the quadratic tetrahedron may differ",
+      "the volume is the mean determinant at these points; Verdict's rules for elements other "
+      "than the quadratic tetrahedron may differ",
       1, Larger },
     { "midnode_tangent_offset", "Tangent offset of middle nodes",
-      "largest |s - 1/2|, s the position of the middle node along the chord of an edge; the edge "
-      "is "
-      "singular at 1/4",
+      "largest |s - 1/2|, where s is the position of the middle node along the chord of an "
+      "edge; the edge is singular at 1/4",
       "Altair OptiStruct 2021 help, Hoe Tangent Offset of 3-Node Edge", quadraticOnly, 0, Smaller },
     { "midnode_normal_offset", "Normal offset of middle nodes",
       "largest distance of a middle node from the chord of its edge over the length of the chord",
@@ -334,7 +333,7 @@ std::vector<int> parseElementChecks(const std::string& list)
       {
         all += std::string(", ") + info.name;
       }
-      throw Error("There is no check \"" + name + "\" of elements; there are all" + all + ".");
+      throw Error("Unknown check \"" + name + "\" of elements; available: all" + all + ".");
     }
     const int number = static_cast<int>(found - known.begin());
     if (std::find(checks.begin(), checks.end(), number) == checks.end())

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ElementChecks.h
- * @brief How solvers and preprocessors check curved elements: their own definitions.
+ * @brief The checks of curved elements in solvers and preprocessors, by their own definitions.
  *
- * Each check is a number per cell, from the Jacobian determinant at certain places or from the
- * middle nodes of the edges. They are offered to compare with these programs; only jacobian_ratio
- * and the metric min_jacobian hold for the whole element.
+ * Each check is a number per cell, from the Jacobian determinant at certain points or from the
+ * middle nodes of the edges. They are provided for comparison with these programs; only
+ * jacobian_ratio and the metric min_jacobian apply to the whole element.
  *
- * Only facts that the named source states are taken from it. Where it leaves the places open, or
- * could not be verified, the entry `note` of the check states what is computed here.
+ * Only stated facts are taken from the named source. If it does not specify the points, or could
+ * not be verified, the `note` of the check states what is computed here.
  */
 #ifndef tautline_ElementChecks_h
 #define tautline_ElementChecks_h
@@ -18,15 +18,15 @@
 
 namespace tautline
 {
-/// A check. The names are stable: they are those of cell arrays.
+/// A check. The names are stable: they are used for cell arrays.
 struct ElementCheckInfo
 {
   const char* name;
   const char* label;
   const char* formula;
-  const char* source; ///< where the definition is from
-  const char* note;   ///< what the source leaves open, or ""
-  double ideal;       ///< of a straight element with all middle nodes in the middle
+  const char* source; ///< the source of the definition
+  const char* note;   ///< details that the source leaves open, or ""
+  double ideal;       ///< for a straight element with all middle nodes in the middle
   Direction direction;
 };
 
@@ -38,14 +38,14 @@ TAUTLINE_KERNEL_EXPORT const std::vector<ElementCheckInfo>& elementChecks();
 
 /**
  * @brief The numbers of some checks.
- * @param list names, separated by commas, blanks around them are ignored; "all"; "": none
- * @throws Error, which lists the names, for one that is not known
+ * @param list comma-separated names; surrounding blanks are ignored; "all"; "": none
+ * @throws Error, listing the names, for an unknown one
  */
 TAUTLINE_KERNEL_EXPORT std::vector<int> parseElementChecks(const std::string& list);
 
 /**
- * @brief One value per cell, also of linear cells, whose map has the same form. Values are finite:
- * 0 for cells that have none (not supported, not finite; a distortion without a volume).
+ * @brief One value per cell, including linear cells, whose map has the same form. Values are
+ * finite: 0 for cells that have none (not supported, not finite; a distortion without a volume).
  * @param check a position in elementChecks()
  */
 TAUTLINE_KERNEL_EXPORT void evaluateElementCheck(

@@ -12,9 +12,9 @@ namespace tautline
 {
 namespace
 {
-/// Colours a chunk may have; more means the cells must be reordered first.
+/// The maximum number of colors; if more are needed, the cells are reordered first.
 constexpr int MaxColours = 64;
-/// Coordinates and gradient of so many points fit into the cache of a core.
+/// Coordinates and gradient of this many points fit into the cache of a core.
 constexpr Index FewPoints = 1 << 15;
 
 /// Interleaves the low 21 bits of three integers: the position on a Morton curve.
@@ -34,7 +34,7 @@ std::uint64_t mortonCode(const Vec3& p, const Vec3& low, double scale)
   return code;
 }
 
-/// Positions of a block's cells along a Morton curve through their centres.
+/// The positions of the cells of a block along a Morton curve through their centers.
 std::vector<Index> spatialOrder(const Mesh& mesh, const CellBlock& block)
 {
   std::vector<Vec3> centers(block.count);
@@ -71,15 +71,15 @@ std::vector<Index> spatialOrder(const Mesh& mesh, const CellBlock& block)
   return order;
 }
 
-/// A colour, and a chunk that has it.
+/// A color, and a chunk of this color.
 using ColouredChunk = std::pair<int, ElementSum::Chunk>;
 
 /**
- * @brief Colours the chunks greedily, one after the other: a colour is free if no vertex of the
- * chunk has it yet.
- * @param reordered the cells of each block go along a space-filling curve
+ * @brief Colors the chunks greedily, one after the other: a color is free if no vertex of the chunk
+ * has it yet.
+ * @param reordered whether to order the cells of each block along a space-filling curve
  * @param orders of each block, set if reordered
- * @return false if no colour is free for a chunk
+ * @return false if no color is free for a chunk
  */
 bool colourChunks(const Mesh& mesh, Metric metric, bool reordered,
   std::vector<std::vector<Index>>& orders, std::vector<ColouredChunk>& coloured)
@@ -87,7 +87,7 @@ bool colourChunks(const Mesh& mesh, Metric metric, bool reordered,
   const MeshView& view = mesh.view();
   const MetricCode code = metricCode(metric);
   const auto& blocks = mesh.blocks();
-  std::vector<std::uint64_t> used(view.numberOfPoints, 0); // colours of each vertex, as bits
+  std::vector<std::uint64_t> used(view.numberOfPoints, 0); // colors of each vertex, as bits
   for (std::size_t b = 0; b < blocks.size(); ++b)
   {
     const CellBlock& block = blocks[b];
@@ -148,8 +148,8 @@ ElementSum::ElementSum(const Mesh& mesh, Metric metric, const EvaluationOptions&
   {
     std::vector<ColouredChunk> coloured;
     const bool failed = !colourChunks(mesh, metric, reordered, this->Order, coloured);
-    // Many colours mean a numbering without locality: go along a space-filling curve instead, which
-    // keeps the chunks compact. Its own few extra colours are then accepted.
+    // Many colors indicate a numbering without locality: use a space-filling curve instead, which
+    // keeps the chunks compact. Its few extra colors are then accepted.
     int colours = 0;
     for (const auto& c : coloured)
     {

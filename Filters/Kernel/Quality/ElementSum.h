@@ -4,13 +4,13 @@
  * @brief Sums a function of a metric over the elements of a mesh, with its gradient.
  * Internal: not installed.
  *
- * The elements are cut into chunks and the chunks coloured: those of one colour share no vertex, so
- * that threads add to the gradient without locks and in an order that depends on the mesh only.
+ * The elements are divided into chunks, which are colored: chunks of one color share no vertex, so
+ * that threads add to the gradient without locks and in an order that only depends on the mesh.
  *
- * Where the numbering of the mesh has no locality the cells are visited along a space-filling
- * curve. Sums go over copies of the connectivity in that order and, if they do not fit into the
- * cache anyway, of the coordinates and the gradient in the order the cells meet the points: all
- * would be read and written at random otherwise.
+ * If the numbering of the mesh has no locality, the cells are visited along a space-filling curve.
+ * Sums use copies of the connectivity in that order and, unless they fit into the cache, of the
+ * coordinates and the gradient in the order in which the cells visit the points; otherwise all
+ * would be accessed randomly.
  */
 #ifndef tautline_ElementSum_h
 #define tautline_ElementSum_h
@@ -27,25 +27,26 @@ namespace tautline
 /// The evaluators of any metric.
 TAUTLINE_KERNEL_EXPORT MetricCode metricCode(Metric metric);
 
-/// Throws Error on a metric that the mesh's dimension does not define, and on options out of range.
+/// Throws Error for a metric that is undefined in the dimension of the mesh, and for options out of
+/// range.
 void checkEvaluation(const Mesh& mesh, const MetricInfo& info, const EvaluationOptions& options);
 
-/// Throws Error on a metric without derivatives of its own, see needsDifferences().
+/// Throws Error for a metric without analytic derivatives, see needsDifferences().
 TAUTLINE_KERNEL_EXPORT void requireDerivatives(const MetricInfo& info);
 
-/// The evaluator of a metric on a block, or null where the metric is not defined.
+/// The evaluator of a metric on a block, or null if the metric is undefined.
 TAUTLINE_KERNEL_EXPORT BatchEvaluator evaluatorFor(const Mesh& mesh, Metric metric,
   const MetricCode& code, const CellBlock& block, bool withGradient);
 
-/// As evaluatorFor(), and null for cells that are not elements: the facets of a volume mesh, which
-/// are measured but are in no sum.
+/// Like evaluatorFor(), but null for cells that are not elements: the facets of a volume mesh,
+/// which are measured but not summed.
 BatchEvaluator elementEvaluatorFor(const Mesh& mesh, Metric metric, const MetricCode& code,
   const CellBlock& block, bool withGradient);
 
 TAUTLINE_KERNEL_EXPORT BatchContext contextFor(
   const Mesh& mesh, const CellBlock& block, Metric metric, const EvaluationOptions& options);
 
-/// Undoes the mirroring of gather(), removes what is not finite, multiplies by a factor and hands
+/// Undoes the mirroring of gather(), removes nonfinite numbers, multiplies by a factor and passes
 /// the gradient at node k of cell l of the batch to put(lanes, l, k), cell by cell.
 template <int Nodes, class Put>
 void scatter(const BatchContext& context, const Batch& batch, Packet factor, const Put& put)
@@ -81,7 +82,7 @@ void scatter(const BatchContext& context, const Batch& batch, Packet factor, con
   }
 }
 
-/// x with 0 in the lanes that only fill a batch.
+/// x with 0 in padding lanes.
 inline Packet onlyCells(const Batch& batch, Packet x)
 {
   for (int l = batch.count; l < PacketWidth; ++l)
@@ -91,7 +92,7 @@ inline Packet onlyCells(const Batch& batch, Packet x)
   return x;
 }
 
-/// What a chunk adds up: one sum per lane.
+/// The sums of a chunk: one per lane.
 struct LaneSums
 {
   Packet lanes = {};
@@ -116,7 +117,7 @@ public:
     Index length() const { return this->end - this->begin; }
   };
 
-  /// Prepares the chunks and their colours. The mesh must outlive the sum.
+  /// Prepares the chunks and their colors. The mesh must outlive the sum.
   ElementSum(const Mesh& mesh, Metric metric, const EvaluationOptions& options);
 
   const Mesh& mesh() const { return this->TheMesh; }
@@ -143,8 +144,8 @@ public:
   /// The values of a metric that is evaluated for many elements at once; null for the others.
   std::unique_ptr<ElementTable> tabulated(bool withSlopes) const;
 
-  /// Calls work(i) for each chunk; at one time only for chunks that share no vertex, and in an
-  /// order that is fixed for each vertex.
+  /// Calls work(i) for each chunk; concurrently only for chunks that share no vertex, and in a
+  /// fixed order for each vertex.
   template <class Work>
   void forEachChunk(const Work& work) const
   {
@@ -157,8 +158,8 @@ public:
 
   /**
    * @brief Evaluates every cell and calls function(context, batch, total, slope) for each batch: it
-   * adds to `total`, and `slope` is what the metric's gradient is multiplied by and added to
-   * `gradient`.
+   * adds to `total`, and sets `slope`, by which the metric gradient is multiplied before it is
+   * added to `gradient`.
    * @param numbered whether the function reads Batch::cells, as weights do; with targets they are
    * set anyway
    * @return the totals, one per chunk, in a fixed order
@@ -188,7 +189,7 @@ public:
           [&](auto nodesOfCell)
           {
             constexpr int Nodes = decltype(nodesOfCell)::value;
-            // Copies that stores to the gradient cannot change.
+            // Local copies, which stores to the gradient cannot modify.
             const double* const points = coordinates;
             double* const sums = gradientThere;
             const Index* const order = this->order(chunk);
@@ -227,7 +228,7 @@ public:
   }
 
 private:
-  /// The nodes of each cell of a batch, as places in PackedPoints or as points.
+  /// The nodes of each cell of a batch, as positions in PackedPoints or as points.
   using PackedNodes = const std::int32_t* [PacketWidth];
 
   /// 3 per packed point.
@@ -236,7 +237,7 @@ private:
     std::vector<double> coordinates, gradient;
   };
 
-  /// The buffers kept from call to call, or new ones while another thread has those.
+  /// The buffers kept between calls, or new ones while another thread uses them.
   class Scratch
   {
   public:
@@ -267,7 +268,7 @@ private:
   const double* packedCoordinates(std::vector<double>& coordinates) const;
   void addUnpacked(const std::vector<double>& packedGradient, double* gradient) const;
 
-  /// The numbers of the cells of a batch, which are read for nothing else.
+  /// The numbers of the cells of a batch, only computed if needed.
   static void findCells(
     const BatchContext& context, const Index* order, Index begin, int count, Batch& batch)
   {
@@ -278,7 +279,7 @@ private:
     }
   }
 
-  /// As gather(), from packed connectivity and coordinates.
+  /// Like gather(), from packed connectivity and coordinates.
   template <int Nodes>
   static inline __attribute__((always_inline)) void gatherPacked(const BatchContext& context,
     const std::int32_t* connectivity, const double* coordinates, Index begin, int count,
@@ -297,8 +298,9 @@ private:
   Metric TheMetric;
   EvaluationOptions Options;
   std::vector<std::vector<Index>> Order; ///< per block: positions in cache-friendly order, or empty
-  std::vector<Chunk> Chunks;             ///< sorted by colour
-  std::vector<Index> PackedPoints; ///< points in the order the cells meet them; empty: as they are
+  std::vector<Chunk> Chunks;             ///< sorted by color
+  /// points in the order in which cells visit them; empty: original order
+  std::vector<Index> PackedPoints;
   std::vector<std::vector<std::int32_t>> PackedConnectivity; ///< per block, in its Order
   mutable Buffers KeptBuffers;
   mutable std::atomic_flag Busy = ATOMIC_FLAG_INIT;

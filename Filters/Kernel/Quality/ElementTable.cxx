@@ -13,8 +13,8 @@ namespace
 {
 constexpr double NaN = std::numeric_limits<double>::quiet_NaN();
 
-/// A point, or a displacement, as a user's metric sees it: in the plane of a planar mesh, mirrored
-/// with the mesh.
+/// A point or displacement in the coordinates of a user metric: in the plane of a planar mesh,
+/// mirrored with the mesh.
 Vec3 asSeen(const Mesh& mesh, const CellTopology& t, Vec3 p)
 {
   if (t.dimension == 2 && mesh.dimension() == Dimension::Planar)
@@ -29,7 +29,7 @@ Vec3 asSeen(const Mesh& mesh, const CellTopology& t, Vec3 p)
   return p;
 }
 
-/// The elements of a block as the function takes them.
+/// The elements of a block in the form required by the function.
 class BlockValues
 {
 public:
@@ -64,17 +64,18 @@ public:
     return found;
   }
 
-  /// The derivatives by coordinate c of corner k; 0 where there is no finite value nearby.
+  /// The derivatives with respect to coordinate c of corner k; 0 if there is no finite value
+  /// nearby.
   std::vector<double> slopes(int k, int c, const std::vector<double>& here)
   {
-    // A step of this fraction of the element's size balances rounding and the third derivative.
+    // A step of this fraction of the element size balances rounding and the third derivative.
     static const double fraction = std::cbrt(std::numeric_limits<double>::epsilon());
     Vec3 axis = { 0, 0, 0 };
     axis[c] = 1;
     const Vec3 seen = asSeen(this->TheMesh, this->Topology, axis);
     if (norm(seen) == 0)
     {
-      return std::vector<double>(this->Block.count); // at right angles to the plane of the mesh
+      return std::vector<double>(this->Block.count); // perpendicular to the plane of the mesh
     }
     std::vector<Vec3> kept(this->Block.count);
     for (Index i = 0; i < this->Block.count; ++i)
@@ -172,7 +173,8 @@ ElementTable tabulate(const Mesh& mesh, const MetricInfo& info, bool withSlopes)
     {
       table.values[block.cell(i)] = std::isfinite(values[i]) ? values[i] : NaN;
     }
-    const bool inSums = withSlopes && isElement(mesh, block.type); // facets beside volumes are not
+    // facets of volumes are not elements
+    const bool inSums = withSlopes && isElement(mesh, block.type);
     for (int j = 0; inSums && j < 3 * topology(block.type).nodes; ++j)
     {
       const std::vector<double> slopes = elements.slopes(j / 3, j % 3, values);

@@ -17,8 +17,9 @@ namespace tautline
 /// Values and derivatives of all elements of a mesh.
 struct ElementTable
 {
-  std::vector<double> values; ///< one per cell of the view; NaN where the metric has none
-  /// 3 per entry of the view's connectivity: by the coordinates of that point.
+  std::vector<double> values; ///< one per cell of the view; NaN where the metric is undefined
+  /// 3 per entry of the connectivity of the view: derivatives with respect to the coordinates of
+  /// that point.
   std::vector<double> slopes;
 };
 

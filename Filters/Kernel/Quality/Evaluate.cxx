@@ -66,7 +66,7 @@ BatchEvaluator evaluatorFor(const Mesh& mesh, Metric metric, const MetricCode& c
 {
   const MetricInfo& info = metricInfo(metric);
   const bool flat = topology(block.type).dimension == 2;
-  // 2D cells beside volume cells have no orientation in space.
+  // 2D cells next to volume cells have no orientation in space.
   const bool oriented = info.rotationInvariant || !flat || mesh.dimension() == Dimension::Planar;
   if (!info.definedOn(block.type) || !oriented)
   {
@@ -102,7 +102,7 @@ std::string objectiveProblem(Metric metric)
   if (info.family == MetricFamily::Faces)
   {
     return std::string(info.label) +
-      " compares the cells on both sides of faces and is no function of one element. Choose "
+      " compares the cells on both sides of faces and is not a function of one element. Choose "
       "another metric.";
   }
   return "";
@@ -121,7 +121,7 @@ void requireDerivatives(const MetricInfo& info)
   if (info.user && !info.user->hasDerivatives())
   {
     throw Error(std::string(info.label) +
-      " has no derivatives of its own, which this takes. Register it in C++ "
+      " has no analytic derivatives, which are needed here. Register it in C++ "
       "(tautline/Quality/UserMetric.h), or choose another metric.");
   }
 }
@@ -132,8 +132,8 @@ namespace
 constexpr double smallestNormal = std::numeric_limits<double>::min();
 
 /**
- * @brief How many cells of a batch have a value that double precision cannot hold. Other elements
- * without a finite value are degenerate or not finite.
+ * @brief The number of cells of a batch with a value that double precision cannot hold. Other
+ * elements without a finite value are degenerate or not finite.
  * @param measured the values before they were converted from the units of the cells
  * @param ordinary whether the typical cell of the mesh is of ordinary size
  */
@@ -142,7 +142,7 @@ Index countBeyond(const BatchContext& context, const MetricInfo& info, const Bat
 {
   const Packet value = batch.value;
   const Mask vanished = (abs(value) < smallestNormal) & (measured != 0.0);
-  // Areas and volumes that vanish make a function of them vanish, too.
+  // If areas and volumes vanish, functions of them also vanish.
   const bool ofSize = info.inverted == InvertedValue::Larger && info.lengthPower(1) > 0;
   const Mask suspect = ~(abs(value) <= std::numeric_limits<double>::max()) | vanished |
     ((value == 0.0) & (ofSize ? -1 : 0));
@@ -158,7 +158,7 @@ Index countBeyond(const BatchContext& context, const MetricInfo& info, const Bat
     {
       p[k] = pointOf(context.mesh->view(), nodes[l][k]);
     }
-    // Vertices astray make no cell that is measured; see NonFinite.
+    // Cells with stray vertices are not measured; see NonFinite.
     constexpr double stray = 1e100;
     const bool near = std::all_of(
       p + 1, p + context.topology->nodes, [&](const Vec3& q) { return norm(q - p[0]) < stray; });
@@ -173,7 +173,7 @@ Index countBeyond(const BatchContext& context, const MetricInfo& info, const Bat
   return count;
 }
 
-/// @param undefined the value where that of the metric is not finite
+/// @param undefined the value to use if the metric value is not finite
 Index evaluateAll(const Mesh& mesh, Metric metric, const EvaluationOptions& options, double* values,
   double* gradients, double undefined = 0.0)
 {
@@ -191,7 +191,7 @@ Index evaluateAll(const Mesh& mesh, Metric metric, const EvaluationOptions& opti
   }
   const MeshView& view = mesh.view();
   const MetricCode code = metricCode(metric);
-  // Cells without a value get 0; nothing is filled if every cell has one.
+  // Cells without a value get 0; skip filling if every cell has one.
   Index covered = 0;
   for (const CellBlock& block : mesh.blocks())
   {

@@ -9,8 +9,8 @@ namespace
 /// The nodes of the face opposite each vertex of a tetrahedron.
 constexpr int oppositeFace[4][3] = { { 1, 2, 3 }, { 0, 2, 3 }, { 0, 1, 3 }, { 0, 1, 2 } };
 
-/// Adds scale * (b - a) x (c - a)-type derivatives of a triangle's squared normal or of its normal
-/// along n: both are n . ((b - a) x (c - a)) to first order.
+/// Adds scale times the derivatives of the squared normal of a triangle, or of its normal along n:
+/// both are n . ((b - a) x (c - a)) to first order.
 void addNormalGradient(Packet scale, const Packet* n, int a, int b, int c, Batch& batch)
 {
   Packet ab[3], ac[3], forB[3], forC[3];
@@ -27,11 +27,12 @@ void addNormalGradient(Packet scale, const Packet* n, int a, int b, int c, Batch
 }
 
 /**
- * @brief The gradient of a metric by the points, from its derivatives d by the invariants.
+ * @brief The gradient of a metric with respect to the points, from its derivatives d with respect
+ * to the invariants.
  * @param edges from point 0 to the others
  * @param normal of a triangle, of length 1
- * @param faceNormal of the faces of a tetrahedron, twice as long as their areas
- * Always inlined: it shares products with the value.
+ * @param faceNormal of the faces of a tetrahedron, with twice their areas as length. Always
+ * inlined: it shares products with the value.
  */
 template <int N>
 inline __attribute__((always_inline)) void setGradient(const CellTopology& topology,
@@ -100,8 +101,8 @@ void evaluateSimplex(const BatchContext& context, Batch& batch)
   Packet lengths2 = s.edge2[0] * s.edge2[2], jacobian2;
   if constexpr (N == 2)
   {
-    // A planar triangle's area is signed along the mesh's normal, a surface triangle's along its
-    // own.
+    // The area of a planar triangle is signed along the mesh normal, the area of a surface triangle
+    // along its own normal.
     jacobian2 = dot(normal, normal);
     const Packet length = sqrt(jacobian2);
     const Packet over = select(length > 0.0, 1.0 / length, Packet{});

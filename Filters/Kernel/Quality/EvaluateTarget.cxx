@@ -66,13 +66,13 @@ void addGradient(const BatchContext& context, const Corner<N>& corner, int sampl
 
   if (seenByTensor<M>(context))
   {
-    // The root is symmetric: d(root A) carries P back to root P.
+    // The root is symmetric, so the chain rule maps P to root P.
     Packet seen[N][N];
     multiply<N>(corner.root, p, seen);
     std::copy(&seen[0][0], &seen[0][0] + N * N, &p[0][0]);
   }
 
-  // dq/dA = P W^-t, then from the columns of A to the corner's nodes.
+  // dq/dA = P W^-t, then from the columns of A to the nodes of the corner.
   const auto& nodes = context.topology->cornerNodes[sample];
   for (int k = 0; k < N; ++k)
   {
@@ -105,7 +105,7 @@ void addGradient(const BatchContext& context, const Corner<N>& corner, int sampl
   }
 }
 
-/// Value (and partial derivatives) of a metric at a corner, 0 where it is singular.
+/// The value (and partial derivatives) of a metric at a corner, 0 if it is singular.
 template <class M, int N>
 Packet evaluateInvariants(
   const BatchContext& context, const Corner<N>& corner, TargetInvariants<N>& d)
@@ -122,7 +122,7 @@ Packet evaluateInvariants(
   return q;
 }
 
-/// As above, also for a user's metric.
+/// As above, including user metrics.
 template <class M, int N, bool WithGradient>
 Packet evaluateFormula(const BatchContext& context, Corner<N>& corner, TargetInvariants<N>& d)
 {
@@ -146,14 +146,15 @@ Packet evaluateFormula(const BatchContext& context, Corner<N>& corner, TargetInv
 }
 
 /**
- * @brief A user's metric at a corner, with its derivative by the vertex that moves
- * (Batch::moving), in the mesh's coordinates.
+ * @brief A user metric at a corner, with its derivative with respect to the moving vertex
+ * (Batch::moving), in mesh coordinates.
  */
 template <class M, int N>
 Packet evaluateMoving(const BatchContext& context, const Batch& batch, int sample,
   Corner<N>& corner, Packet (&slope)[3])
 {
-  // A vertex that is at the corner moves all columns of A back, one at an end its own column.
+  // A vertex at the corner moves all columns of A backward, a vertex at an edge end only its own
+  // column.
   const auto& nodes = context.topology->cornerNodes[sample];
   Packet along[N] = {}, byRow[N], q;
   for (int k = 0; k < N; ++k)
@@ -188,7 +189,7 @@ Packet evaluateMoving(const BatchContext& context, const Batch& batch, int sampl
   return M::singular ? select(corner.degenerate, Packet{}, q) : q;
 }
 
-/// The value of a user's metric on cells, and its derivative by the vertex that moves.
+/// The value of a user metric on cells, and its derivative with respect to the moving vertex.
 template <class M, int N>
 void evaluateMovingCells(
   const BatchContext& context, const Packet* normal, Corner<N>& corner, Batch& batch)
@@ -225,7 +226,7 @@ void evaluateMovingCells(
   }
 }
 
-/// Whether a metric is a function of |T|^2 and det T alone, with T relative to the target.
+/// Whether a metric is a function of only |T|^2 and det T, with T relative to the target.
 template <class M>
 constexpr bool ofNormAndDeterminant = !M::usesAdjugate && !M::usesTrace && !M::usesSize && !M::user;
 
@@ -282,7 +283,7 @@ void evaluateRegular(const BatchContext& context, Batch& batch)
   }
 }
 
-/// Flattened into one function: calls between the steps would cost more than the steps.
+/// Inlined into one function: calls between the steps would cost more than the steps.
 template <class M, int N, bool WithGradient>
 __attribute__((flatten)) void evaluateTarget(const BatchContext& context, Batch& batch)
 {
@@ -332,7 +333,7 @@ __attribute__((flatten)) void evaluateTarget(const BatchContext& context, Batch&
     return;
   }
 
-  constexpr int kept = M::user && WithGradient ? MaxNodes : 1; // a user's formula is evaluated once
+  constexpr int kept = M::user && WithGradient ? MaxNodes : 1; // a user formula is evaluated once
   Packet q[MaxNodes] = {}, weights[MaxNodes] = {}, slopes[kept][N][N];
   Mask negative[MaxNodes] = {}, degenerate = {};
   for (int s = 0; s < samples; ++s)
@@ -344,7 +345,7 @@ __attribute__((flatten)) void evaluateTarget(const BatchContext& context, Batch&
     negative[s] = (corner.invariants.det < 0.0) & ~corner.degenerate;
     if constexpr (!M::singular)
     {
-      negative[s] = Mask{}; // an untangling metric needs the pull of every corner
+      negative[s] = Mask{}; // an untangling metric needs the contribution of every corner
     }
     else
     {

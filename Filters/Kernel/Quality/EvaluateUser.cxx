@@ -6,7 +6,7 @@ namespace tautline
 {
 namespace
 {
-/// Coordinates as a user's metric sees them: in the plane of a planar mesh, in the mesh's unit.
+/// Coordinates in the form used by a user metric: in the plane of a planar mesh, in mesh units.
 template <int Nodes>
 void loadCorners(
   const Batch& batch, const Packet (*axes)[3], Packet unit, Packet (&points)[Nodes][3])
@@ -23,7 +23,8 @@ void loadCorners(
   }
 }
 
-/// Derivatives by the coordinates of the batch, which are those of the mesh per unit.
+/// Derivatives with respect to the coordinates of the batch, which are the mesh coordinates per
+/// unit.
 template <int Nodes>
 void carryBack(const Packet (*slopes)[3], const Packet (*axes)[3], Packet unit, Batch& batch)
 {

@@ -3,8 +3,8 @@
  * @file ExtremalMetrics.cxx
  * @brief Metrics that are an extremum over the edges or corners of a cell, on packets of cells.
  *
- * A first loop finds the extremal term of each lane and keeps its vectors; the derivatives are
- * those of this term, and go to its nodes. Facts in MetricRegistry.cxx.
+ * A first loop finds the extremal term of each lane and keeps its vectors; the derivatives of this
+ * term are then added to its nodes. The facts are in MetricRegistry.cxx.
  */
 #include "Batch.h"
 
@@ -24,7 +24,7 @@ void keep(Mask lanes, const Packet* from, Packet* to)
   }
 }
 
-/// Adds the vector to the gradient by one node in some lanes, and takes it away from another.
+/// Adds the vector to the gradient of one node in some lanes, and subtracts it from another.
 void addDifference(Mask lanes, const Packet* by, int plus, int minus, Batch& batch)
 {
   for (int c = 0; c < 3; ++c)
@@ -57,7 +57,8 @@ struct FaceNormals
     cross(this->u, this->v, this->normal);
   }
 
-  /// Adds the derivatives by the points, from those by the normal.
+  /// Adds the derivatives with respect to the points, from the derivatives with respect to the
+  /// normal.
   void addGradient(const Packet* byNormal, Batch& batch) const
   {
     Packet du[3], dv[3];
@@ -74,7 +75,7 @@ struct FaceNormals
   Packet u[3], v[3], normal[3];
 };
 
-/// The side of a 2D cell that counts as positive: of the mesh's plane, or the cell's own.
+/// The positive side of a 2D cell: relative to the plane of the mesh, or of the cell itself.
 void positiveSide(const BatchContext& context, const Batch& batch, Packet* side)
 {
   if (context.mesh->dimension() != Dimension::Planar)
@@ -90,7 +91,7 @@ void positiveSide(const BatchContext& context, const Batch& batch, Packet* side)
 }
 
 //------------------------------------------------------------------------------
-/// Longest over shortest edge; 0 where that vanishes.
+/// Longest over shortest edge; 0 if the latter vanishes.
 template <bool WithGradient>
 void edgeRatio(const BatchContext& context, Batch& batch)
 {
@@ -136,8 +137,8 @@ void edgeRatio(const BatchContext& context, Batch& batch)
 }
 
 //------------------------------------------------------------------------------
-/// The smallest corner Jacobian over its edge lengths, scaled so that the ideal corner has 1. In 2D
-/// the third edge is the unit normal on the side that counts as positive.
+/// The smallest corner Jacobian over its edge lengths, scaled to 1 for the ideal corner. In 2D, the
+/// third edge is the unit normal on the positive side.
 template <bool WithGradient>
 void scaledJacobian(const BatchContext& context, Batch& batch)
 {
@@ -182,7 +183,7 @@ void scaledJacobian(const BatchContext& context, Batch& batch)
       worst = select(less, broadcast(corner), worst);
     }
   }
-  // A cell whose corners are no numbers.
+  // A cell whose corners are NaN.
   batch.value = select(batch.value < HUGE_VAL, batch.value, Packet{});
   if constexpr (WithGradient)
   {
@@ -211,15 +212,15 @@ void scaledJacobian(const BatchContext& context, Batch& batch)
 }
 
 //------------------------------------------------------------------------------
-/// Falls as the angle of a sine of at least 0 and a cosine grows from 0 to pi, from 1 to -1, and
-/// takes far less time than the angle. With a vector that vanishes the angle is 0.
+/// A number that decreases from 1 to -1 as the angle with this sine (at least 0) and cosine
+/// increases from 0 to pi; much cheaper than the angle. If a vector vanishes, the angle is 0.
 Packet rankOfAngle(Packet sine, Packet cosine)
 {
   const Packet size = sine + abs(cosine);
   return select(size > 0.0, cosine / size, broadcast(1.0));
 }
 
-/// The angle between vectors of length 1, in degrees; 0 where one has length 0.
+/// The angle between vectors of length 1, in degrees; 0 if one has length 0.
 Packet angleOf(Packet sine, Packet cosine)
 {
   Packet angle;
@@ -231,7 +232,7 @@ Packet angleOf(Packet sine, Packet cosine)
   return angle;
 }
 
-/// A vector's length; divides it by that, or sets it to 0 where it has none.
+/// Returns the length of a vector and normalizes it, or sets it to 0 if it has no length.
 Packet normalize(Packet* x)
 {
   const Packet length = sqrt(dot(x, x));
@@ -268,7 +269,8 @@ struct Angles
     this->rank = select(lanes, other.rank, this->rank);
   }
 
-  /// The derivatives of the angle by the vectors, times a factor; 0 where there is no plane.
+  /// The derivatives of the angle with respect to the vectors, times a factor; 0 if the vectors
+  /// span no plane.
   void derivatives(Packet factor, Packet* da, Packet* db) const
   {
     const Packet overA = select(this->sine > 0.0, -factor / (this->lengthA * this->sine), Packet{});
@@ -336,8 +338,8 @@ void extremalDihedral(const BatchContext& context, Batch& batch)
   }
 }
 
-/// The extremal interior angle of a 2D cell in [0, 2 pi), reflex where a corner of a quadrilateral
-/// turns the other way than the cell. @param Sign 1: the largest, -1: the smallest
+/// The extremal interior angle of a 2D cell in [0, 2 pi), reflex if a corner of a quadrilateral
+/// turns opposite to the cell. @param Sign 1: the largest, -1: the smallest
 template <int Sign, bool WithGradient>
 void extremalCorner(const BatchContext& context, Batch& batch)
 {
@@ -357,7 +359,7 @@ void extremalCorner(const BatchContext& context, Batch& batch)
     angles.lengthA = normalize(angles.a);
     angles.lengthB = normalize(angles.b);
     angles.find();
-    // Beyond pi the rank goes on falling, from -1 to -3.
+    // Beyond pi, the rank continues to decrease, from -1 to -3.
     const Packet rank = static_cast<double>(Sign) * select(reflex, -2.0 - angles.rank, angles.rank);
     const Mask better = rank < bestRank;
     bestRank = select(better, rank, bestRank);

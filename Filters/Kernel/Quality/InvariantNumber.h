@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file InvariantNumber.h
- * @brief A number with its first and second derivatives by |T|^2 and det T.
+ * @brief A number with its first and second derivatives with respect to |T|^2 and det T.
  *
- * A user's formula that reads T by norm2() and det() alone is evaluated in it: Newton's method
- * needs no more of such a metric.
+ * Used to evaluate user formulas that only read T through norm2() and det(): sufficient for
+ * Newton's method.
  */
 #ifndef tautline_InvariantNumber_h
 #define tautline_InvariantNumber_h
@@ -13,18 +13,18 @@
 
 namespace tautline
 {
-/// In place of the number of variables.
+/// Used instead of the number of variables.
 constexpr int ByInvariants = -2;
 
-/// As the other dual numbers are, see there.
+/// Like the other dual numbers, see there.
 template <>
 struct DualNumber<ByInvariants>
 {
   static constexpr int variables = ByInvariants;
 
   Packet value;
-  Packet slope[2];     ///< by |T|^2, det T
-  Packet curvature[3]; ///< by both |T|^2, one each, both det T
+  Packet slope[2];     ///< with respect to |T|^2, det T
+  Packet curvature[3]; ///< with respect to |T|^2 twice, |T|^2 and det T, det T twice
 
   DualNumber() = default;
   /// A constant.
@@ -211,7 +211,7 @@ struct DualNumber<ByInvariants>
   }
 
 private:
-  /// A function of the numbers one by one.
+  /// Applies a function to each number.
   template <class Function>
   static DualNumber combine(const DualNumber& a, const DualNumber& b, const Function& function)
   {

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file JudgedValues.h
- * @brief The values of a metric by which the worst element is found.
- * Internal: not installed.
+ * @brief The metric values that define the worst element. Internal: not installed.
  */
 #ifndef tautline_JudgedValues_h
 #define tautline_JudgedValues_h
@@ -17,25 +16,26 @@
 namespace tautline
 {
 /**
- * @brief As evaluateMetric(), but infinitely bad where a user's metric has no finite value, instead
- * of 0: infinity, or -infinity of metrics of which larger values are better.
+ * @brief Like evaluateMetric(), but infinitely bad instead of 0 if a user metric has no finite
+ * value: infinity, or -infinity for metrics with larger values better.
  */
 void evaluateJudged(
   const Mesh& mesh, Metric metric, const EvaluationOptions& options, double* values);
 
-/// Values of evaluateJudged() as those of evaluateMetric().
+/// Converts values of evaluateJudged() to values of evaluateMetric().
 inline void asMeasured(std::vector<double>& values)
 {
   std::replace_if(
     values.begin(), values.end(), [](double q) { return !std::isfinite(q); }, 0.0);
 }
 
-/// What is wrong with an input that has no finite value where the metric judges the worst element.
-/// @param element as "cell 7"
+/// The message for an input with an element on which the metric of the worst element has no finite
+/// value.
+/// @param element for example "cell 7"
 inline std::string noValueToJudge(const MetricInfo& info, const std::string& element)
 {
   return "The metric \"" + std::string(info.label) + "\" has no finite value on " + element +
-    " and cannot judge which element is the worst. Its formula must have a finite value on every "
+    " and cannot determine the worst element. Its formula must have a finite value on every "
     "valid element: correct it, or choose another metric for the worst element.";
 }
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MetricArguments.h
- * @brief What a user's own metric is written in (see UserMetric.h): the Jacobian at a corner, or
- * the corners of an element.
+ * @brief The arguments of a user metric (see UserMetric.h): the Jacobian at a corner, or the
+ * corners of an element.
  */
 #ifndef tautline_MetricArguments_h
 #define tautline_MetricArguments_h
@@ -17,8 +17,8 @@ namespace tautline
 /**
  * @brief T = A W^-1 at a corner. N is the dimension.
  *
- * The number has derivatives by all entries, by the displacement d of a vertex (T becomes T + d
- * w^t), or by |T|^2 and det T, as that costs least.
+ * The number has derivatives with respect to all entries, to the displacement d of a vertex (T
+ * becomes T + d w^t), or to |T|^2 and det T, whichever is cheapest.
  */
 template <class Number, int N>
 class CornerJacobian
@@ -35,7 +35,7 @@ public:
     , Along(along)
   {
   }
-  /// @param invariants |T|^2 and det T; nothing else is known of T
+  /// @param invariants |T|^2 and det T; no other property of T is available
   explicit CornerJacobian(const Packet (&invariants)[2])
     : Invariants(invariants)
   {
@@ -77,7 +77,7 @@ public:
         return 2.0 * this->T[r][c];
       });
   }
-  /// tau = det T: negative where the corner is inverted.
+  /// tau = det T: negative if the corner is inverted.
   Number det() const
   {
     if (this->Invariants)
@@ -145,11 +145,12 @@ public:
     }
   }
 
-  /// Whether the formula has read more of T than |T|^2 and det T while only these were known.
+  /// Whether the formula has read more of T than |T|^2 and det T while only these were available.
   bool readsMore() const { return this->ReadsMore; }
 
 private:
-  /// A number whose derivative by entry r c is slope(r, c), which also adds to the value.
+  /// A number whose derivative with respect to entry r c is slope(r, c), which also adds to the
+  /// value.
   template <class Slope>
   Number assemble(Packet& sum, const Slope& slope) const
   {
@@ -197,8 +198,8 @@ private:
 };
 
 /**
- * @brief The corners of an element. A planar mesh is seen in its plane: z is 0 and a valid element
- * counter-clockwise; a mesh that is reversed throughout is seen mirrored.
+ * @brief The corners of an element. A planar mesh is given in its plane: z is 0, and a valid
+ * element is counterclockwise; a fully reversed mesh is given mirrored.
  */
 template <class Number, int Nodes>
 class ElementCorners
@@ -210,7 +211,7 @@ public:
     , Points(points)
   {
   }
-  /// @param along how far each corner moves with the vertex the derivatives are taken by
+  /// @param along how far each corner moves with the vertex of differentiation
   ElementCorners(CellType type, const Packet (&points)[Nodes][3], const Packet (&along)[Nodes])
     : Type(type)
     , Points(points)

@@ -11,8 +11,8 @@ namespace tautline
 {
 namespace
 {
-/// The length of the first edge, or the area of the first face less what rounding makes of a line,
-/// in a unit that neither overflows nor underflows. NaN or 0 if there is none.
+/// The length of the first edge, or the area of the first face minus the rounding error for
+/// collinear points, in a unit that neither overflows nor underflows. NaN or 0 if it is degenerate.
 double sizeOfBase(const Vec3& a, const Vec3& b, bool flat)
 {
   double extent = 0.0;
@@ -43,7 +43,7 @@ MetricField::MetricField(CellType type, const std::array<Vec3, 3>& fixed)
 {
   if (type != CellType::Triangle && type != CellType::Tetrahedron)
   {
-    throw Error("A metric field is that of a triangle or a tetrahedron.");
+    throw Error("A metric field requires a triangle or a tetrahedron.");
   }
   const bool flat = type == CellType::Triangle;
   for (Vec3& p : this->Fixed)
@@ -51,12 +51,12 @@ MetricField::MetricField(CellType type, const std::array<Vec3, 3>& fixed)
     p = p - this->Origin;
     p[2] = flat ? 0.0 : p[2];
   }
-  // Without it, no element is valid.
+  // Without a base, no element is valid.
   const double size = sizeOfBase(this->Fixed[1], this->Fixed[2], flat);
   if (!(size > 0) || !std::isfinite(size))
   {
     throw Error(flat ? "The two fixed vertices coincide or are not finite: move one of them."
-                     : "The three fixed vertices are on a line or not finite: move one of them.");
+                     : "The three fixed vertices are collinear or not finite: move one of them.");
   }
 }
 
@@ -64,7 +64,7 @@ MetricField::MetricField(CellType type, const std::array<Vec3, 3>& fixed)
 template <class Visit>
 void MetricField::forEachSlice(const FieldGrid& grid, int threads, const Visit& visit) const
 {
-  // One mesh of cells that share their fixed vertices; from slice to slice only the free ones move.
+  // One mesh of cells that share their fixed vertices; between slices, only the free ones move.
   const Index cells = grid.size[0] * grid.size[1];
   if (cells == 0)
   {
@@ -96,7 +96,7 @@ void MetricField::forEachSlice(const FieldGrid& grid, int threads, const Visit& 
   view.connectivity = connectivity.data();
   for (Index k = 0; k < grid.size[2]; ++k)
   {
-    // The loops of one slice among many are too short to report.
+    // If there are many slices, the loops of one are too short to report.
     std::optional<LoopProgress::Nested> nested;
     if (grid.size[2] > 1)
     {

@@ -21,7 +21,7 @@
 
 namespace tautline
 {
-/// The places of the free vertex: points of a grid, x running fastest.
+/// The positions of the free vertex: points of a grid, x running fastest.
 struct FieldGrid
 {
   Vec3 origin = { 0, 0, 0 };
@@ -32,11 +32,11 @@ struct FieldGrid
 };
 
 /**
- * @brief The cell with all vertices but the last one held fixed.
+ * @brief The cell with all vertices except the last one fixed.
  *
- * A triangle lies in the plane z = 0, where a free vertex left of the line from the first to the
- * second vertex makes it positive: the third coordinates are ignored. A tetrahedron is positive
- * with the free vertex on the side from which its first three vertices run counter-clockwise.
+ * A triangle lies in the plane z = 0; it is positive if the free vertex is left of the line from
+ * the first to the second vertex, and third coordinates are ignored. A tetrahedron is positive if
+ * the free vertex is on the side from which its first three vertices run counterclockwise.
  */
 class TAUTLINE_KERNEL_EXPORT MetricField
 {
@@ -44,8 +44,8 @@ public:
   /// Throws Error for other types, and if the fixed vertices (3; a triangle uses 2) are degenerate.
   MetricField(CellType type, const std::array<Vec3, 3>& fixed);
 
-  /// Writes grid.count() values. Throws Error if the metric is not defined on the cell, and where a
-  /// value is beyond the range of double precision.
+  /// Writes grid.count() values. Throws Error if the metric is undefined on the cell, or if a value
+  /// is beyond the range of double precision.
   void evaluate(
     const FieldGrid& grid, Metric metric, const EvaluationOptions& options, double* values) const;
   /// Writes grid.count() entries of Validity.
@@ -56,7 +56,9 @@ private:
   void forEachSlice(const FieldGrid& grid, int threads, const Visit& visit) const;
 
   CellType Type;
-  Vec3 Origin; ///< the first vertex: cells are computed relative to it, far from 0 as near to it
+  /// the first vertex: cells are computed relative to it, so that the distance from 0 does not
+  /// matter
+  Vec3 Origin;
   std::array<Vec3, 3> Fixed; ///< relative to the origin
 };
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MetricRegistry.cxx
- * @brief The table of facts on every metric.
+ * @brief The table of facts about every metric.
  */
 #include "Metrics.h"
 #include "RegisteredMetrics.h"
@@ -60,7 +60,7 @@ constexpr const char* snappy = "OpenFOAM v1912 snappyHexMesh, meshQualityControl
 
 std::vector<MetricInfo> makeRegistry()
 {
-  // Largest values of the scale-invariant simplex metrics: those of the regular simplex.
+  // The largest values of the scale-invariant simplex metrics, attained by the regular simplex.
   const double root3 = std::sqrt(3.0);
   const double si2 = root3 / 12, si3 = 2 * std::sqrt(2.0) * std::sqrt(root3) / 9;
   const double ss2 = root3 / 4, ss3 = std::sqrt(2.0) / 12 * std::pow(root3 / 1.125, 0.75);
@@ -274,8 +274,8 @@ std::vector<MetricInfo> makeRegistry()
       Unsigned, noBarrier, kinked, scaleFree, rotates, "" },
     { Metric::CenterTetQuality, "center_tet_quality", "Tetrahedron quality, centers", "q_c",
       "mintetvolume",
-      "least volume over that of the regular tetrahedron in the same sphere, of tetrahedra of an "
-      "edge, f and C",
+      "least volume, relative to the regular tetrahedron in the same sphere, of tetrahedra of "
+      "an edge, f and C",
       checkMesh, Faces, true, true, all, { -1, 1 }, { -1, 1 }, { 1e-30, 1 }, { 1e-30, 1 },
       sizeDecides, sizeDecides, Larger, Unsigned, noBarrier, kinked, scaleFree, rotates, "" },
     { Metric::FanTetQuality, "fan_tet_quality", "Tetrahedron quality, fans", "q_b", "tet_quality",
@@ -363,8 +363,7 @@ const MetricInfo& metricInfo(Metric metric)
     return *info;
   }
   const std::string missing = missingMetric(number);
-  throw Error(
-    missing.empty() ? "There is no metric number " + std::to_string(number) + "." : missing);
+  throw Error(missing.empty() ? "Unknown metric number " + std::to_string(number) + "." : missing);
 }
 
 int MetricInfo::lengthPower(int dimension) const

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Metrics.h
- * @brief Element quality metrics: what there is, what each means, and how to evaluate it.
+ * @brief Element quality metrics: the list of metrics, their meaning, and their evaluation.
  *
  * Example: inverse mean ratio of every cell of a mesh (see Mesh.h for the mesh).
  *
@@ -9,11 +9,10 @@
  *     tautline::evaluateMetric(mesh, tautline::Metric::InverseMeanRatio, {}, imr.data());
  *
  * Values are always finite. Cells of extreme size (below 2^-64 or above 2^64) are scaled by powers
- * of two before they are measured, so that metrics without a unit are right for edges between
- * 1e-300 and 1e300. A value with a unit, or relative to a target, that double precision cannot hold
- * is 0, and evaluateMetric() counts it. A degenerate element has the value 0 of every metric that
- * is singular there, and so has a cell the metric is not defined on; Mesh::classifyCells()
- * distinguishes them.
+ * of two before they are measured, so that unitless metrics are correct for edges between 1e-300
+ * and 1e300. A value with a unit, or relative to a target, that double precision cannot hold is 0,
+ * and evaluateMetric() counts it. The value is 0 for a degenerate element if the metric is singular
+ * there, and for a cell on which the metric is undefined; Mesh::classifyCells() distinguishes them.
  */
 #ifndef tautline_Metrics_h
 #define tautline_Metrics_h
@@ -89,7 +88,7 @@ enum class Metric : int
   CellConcavity = 58
 };
 
-/// Which way a metric points.
+/// The direction of improvement of a metric.
 enum class Direction
 {
   SmallerIsBetter,
@@ -97,31 +96,33 @@ enum class Direction
   Neutral ///< neither: a size
 };
 
-/// What the value of an inverted element is.
+/// The value of an inverted element.
 enum class InvertedValue
 {
-  Negative, ///< below zero, where every valid element is above
-  Larger,   ///< finite and worse than that of a valid element: the metric can untangle
+  Negative, ///< below zero, while every valid element is above
+  Larger,   ///< finite and worse than for a valid element: the metric can untangle
   Unsigned  ///< in the range of valid elements; only `Validity` differs
 };
 
-/// How a metric is built, which determines its options.
+/// The construction of a metric, which determines its options.
 enum class MetricFamily
 {
   Target,  ///< a function of T = A W^-1 at each corner; takes targets and a combination
   Simplex, ///< a function of the edges and faces of a triangle or tetrahedron
   Cell,    ///< a function of the whole cell: its angles and lengths, its corners
-  Faces    ///< of finite volumes: of the faces of a cell and the cells across; see FaceMeasures.h
+  /// a finite-volume metric of the faces of a cell and the cells across; see FaceMeasures.h
+  Faces
 };
 
 class UserMetric;
 
-/// Parameters of the few metrics that have any.
+/// Parameters of the few metrics that need them.
 struct Parameters
 {
   /**
-   * @brief Beta of UntangleBeta: the area or volume every element should at least have. The default
-   * is 0, which requires that no element be inverted; the dissertation uses a positive value.
+   * @brief Beta of UntangleBeta: the minimum area or volume that every element should have. The
+   * default is 0, which requires that no element be inverted; the dissertation uses a positive
+   * value.
    */
   double beta = 0.0;
   /// Epsilon of mu_211 and mu_311, above 0; the rounding of their kink at tau = 0.
@@ -135,14 +136,14 @@ struct Range
   double high;
 };
 
-/// What is known of a metric. Feeds the documentation, ParaView's menus and the tests.
+/// The facts about a metric. Used by the documentation, the ParaView menus and the tests.
 struct MetricInfo
 {
   Metric metric;
   const char* name;    ///< short, lower case, stable: the name of the cell array, e.g. "imr"
   const char* label;   ///< for menus, e.g. "Inverse mean ratio"
   const char* symbol;  ///< e.g. "IMR", "mu_2 / mu_303"
-  const char* aliases; ///< other names it is found by, comma separated: "mu_2,mu_303"
+  const char* aliases; ///< other names, comma-separated: "mu_2,mu_303"
   const char* formula; ///< text; n is the dimension
   const char* source;  ///< paper and section
   MetricFamily family;
@@ -151,11 +152,11 @@ struct MetricInfo
   unsigned cellTypes;
   Range full2D, full3D;             ///< of valid elements
   Range acceptable2D, acceptable3D; ///< of elements suitable for most solvers
-  double ideal2D, ideal3D;          ///< of the ideal element; NaN where it depends on size
+  double ideal2D, ideal3D;          ///< of the ideal element; NaN if it depends on size
   Direction direction;
   InvertedValue inverted;
   bool barrier;           ///< tends to infinity as the element degenerates from the valid side
-  bool differentiable;    ///< everywhere on valid elements; else almost everywhere
+  bool differentiable;    ///< everywhere on valid elements; otherwise almost everywhere
   bool scaleInvariant;    ///< with the default target
   bool rotationInvariant; ///< false: depends on the orientation in space; needs Planar or Volume
   const char* unit;       ///< "", "degrees", "length^n", ...
@@ -168,22 +169,23 @@ struct MetricInfo
     return dimension == 2 ? acceptable2D : acceptable3D;
   }
   double ideal(int dimension) const { return dimension == 2 ? ideal2D : ideal3D; }
-  /// The power of the length in the unit of the metric: n of "length^n", -1 of "1/length", else 0.
+  /// The power of the length in the unit of the metric: n of "length^n", -1 of "1/length",
+  /// otherwise 0.
   TAUTLINE_KERNEL_EXPORT int lengthPower(int dimension) const;
   bool definedOn(CellType type) const { return (cellTypes >> topologyIndex(type)) & 1u; }
 };
 
 /**
  * @brief Every metric: the built-in ones in the order of their numbers, then the registered ones in
- * the order of registration. What is returned stays as it is when another one is registered.
+ * the order of registration. The returned list does not change when another one is registered.
  */
 TAUTLINE_KERNEL_EXPORT const std::vector<MetricInfo>& metricRegistry();
 
-/// Those that are functions of one element, which are what this header evaluates: all but
+/// The metrics that are functions of one element, which this header evaluates: all except
 /// MetricFamily::Faces.
 TAUTLINE_KERNEL_EXPORT std::vector<MetricInfo> elementMetrics();
 
-/// How many metrics are built in; their numbers are those below it.
+/// The number of built-in metrics; their numbers are below it.
 TAUTLINE_KERNEL_EXPORT int numberOfBuiltInMetrics();
 
 /// The facts of one metric.
@@ -202,40 +204,40 @@ TAUTLINE_KERNEL_EXPORT const MetricInfo* findMetric(const std::string& name);
 TAUTLINE_KERNEL_EXPORT std::string describeMetric(const MetricInfo& info);
 
 /**
- * @brief The metrics that are registered in this process, a line each: number, label and the other
- * facts, tab-separated, for the menus of a client and for mirrorUserMetrics().
+ * @brief The metrics registered in this process, one per line: number, label and the other facts,
+ * tab-separated, for the menus of a client and for mirrorUserMetrics().
  */
 TAUTLINE_KERNEL_EXPORT std::string listUserMetrics();
 
 /**
- * @brief Makes the metrics of a server, as listUserMetrics() has them there, known in its client:
- * their facts, also for criteria. They are not evaluated here: that throws Error. A metric of the
- * same name that is registered here stays.
+ * @brief Registers the facts of the metrics of a server, as listed there by listUserMetrics(), in
+ * its client, including for criteria. Evaluating them here throws Error. A metric of the same name
+ * that is registered here is kept.
  */
 TAUTLINE_KERNEL_EXPORT void mirrorUserMetrics(const std::string& list);
 
-/// Why a metric cannot be the objective of an optimization, or "".
+/// The reason why a metric cannot be the objective of an optimization, or "".
 TAUTLINE_KERNEL_EXPORT std::string objectiveProblem(Metric metric);
 
-/// Whether a metric is evaluated for many elements at once, without derivatives of its own, such as
-/// a metric of Python (MetricArgument::Elements): global optimizers take differences.
+/// Whether a metric is evaluated for many elements at once, without analytic derivatives, such as a
+/// Python metric (MetricArgument::Elements): global optimizers use differences.
 TAUTLINE_KERNEL_EXPORT bool needsDifferences(Metric metric);
 
 /**
- * @brief What is wrong with the number of a user's metric that is not registered in this process: a
- * state file or another process may have it. "" for all others.
+ * @brief The error message for the number of a user metric that is not registered in this process,
+ * for example from a state file or another process. "" for all others.
  */
 TAUTLINE_KERNEL_EXPORT std::string missingMetric(int number);
 
 /// The names of the fields of describeMetric(), tab-separated.
 TAUTLINE_KERNEL_EXPORT std::string metricFields();
 
-/// How a target metric's corner values become one value of a cell with several corners.
+/// How the corner values of a target metric are combined for a cell with several corners.
 enum class Combination : int
 {
   Mean = 0,     ///< arithmetic mean
-  Worst = 1,    ///< the largest value, or the smallest where larger is better
-  PowerMean = 2 ///< (mean of |q|^p)^(1/p); p is negated where larger is better
+  Worst = 1,    ///< the largest value, or the smallest if larger is better
+  PowerMean = 2 ///< (mean of |q|^p)^(1/p); p is negated if larger is better
 };
 
 /**
@@ -252,7 +254,7 @@ struct Targets
    * in the metric tensor M.
    */
   std::vector<double> metricRoots;
-  /// Set by the functions of Targets.h where entries are beyond 2^-64 to 2^64: they are scaled.
+  /// Set by the functions of Targets.h if entries are outside 2^-64 to 2^64: they are then scaled.
   bool extreme = false;
 };
 
@@ -272,20 +274,21 @@ struct EvaluationOptions
 
 /**
  * @brief Writes one value per cell of the mesh. Cells of unsupported types, or on which the metric
- * is not defined, get 0. Throws Error for a metric of MetricFamily::Faces, here and below.
- * @return how many valid or inverted cells have a value beyond the range of double precision (a
- * volume of 1e-450, a size of 1e-150 against a target of 1 cubed); they get 0
+ * is undefined, get 0. Throws Error for a metric of MetricFamily::Faces, here and below.
+ * @return the number of valid or inverted cells with a value beyond the range of double precision
+ * (a volume of 1e-450, a size of 1e-150 relative to a target of 1 cubed); they get 0
  */
 TAUTLINE_KERNEL_EXPORT Index evaluateMetric(
   const Mesh& mesh, Metric metric, const EvaluationOptions& options, double* values);
 
-/// Throws Error that names the metric and the remedy if evaluateMetric() returned more than 0.
+/// Throws Error, with the metric and a remedy, if evaluateMetric() returned more than 0.
 TAUTLINE_KERNEL_EXPORT void requireInRange(const MetricInfo& info, Index beyond);
 
 /**
  * @brief Values as above and the gradient of each with respect to the vertices of its cell.
- * @param gradients entry (offsets[i] + k) * 3 + c is the derivative of the value of cell i by
- * coordinate c of its k-th node; 3 x the size of the connectivity. Nodes beyond the corners get 0.
+ * @param gradients entry (offsets[i] + k) * 3 + c is the derivative of the value of cell i with
+ * respect to coordinate c of its k-th node; 3 x the size of the connectivity. Nodes beyond the
+ * corners get 0.
  * @return as evaluateMetric()
  */
 TAUTLINE_KERNEL_EXPORT Index evaluateMetricGradient(const Mesh& mesh, Metric metric,
@@ -297,16 +300,16 @@ class ElementSum;
  * @brief Sums a power of a metric over the mesh, with its gradient: the workhorse of optimization.
  *
  * The sum runs over |q|^p with the sign of q, so that inverted elements of a signed metric reduce
- * it; classify the elements first where this matters. Elements are added in an order fixed by the
- * mesh, and so the sum and the gradient are bitwise the same for any number of threads.
+ * it; classify the elements first if this matters. Elements are added in an order fixed by the
+ * mesh, so that the sum and the gradient are bitwise the same for any number of threads.
  */
 class TAUTLINE_KERNEL_EXPORT MetricSum
 {
 public:
-  /// Prepares the chunks and their colours: chunks of one colour share no vertex.
+  /// Prepares the chunks and their colors: chunks of one color share no vertex.
   MetricSum(const Mesh& mesh, Metric metric, const EvaluationOptions& options, double power);
 
-  /// The sum over all cells the metric is defined on.
+  /// The sum over all cells on which the metric is defined.
   double value() const;
   /// The sum, and its gradient in 3 x numberOfPoints entries, which are overwritten.
   double valueAndGradient(double* gradient) const;

@@ -15,7 +15,7 @@ namespace tautline
 {
 namespace
 {
-/// Numbers of registered metrics: above those of the built-in ones, for all time.
+/// Numbers of registered metrics: permanently above the numbers of built-in ones.
 constexpr std::uint32_t firstNumber = 1000000, numbers = 1000000000;
 
 /// The number of a name: FNV-1a, 32 bits.
@@ -30,32 +30,32 @@ int numberOf(const std::string& name)
   return static_cast<int>(firstNumber + hash % numbers);
 }
 
-/// A registered metric and what its facts point to.
+/// A registered metric and the storage of its facts.
 struct Registered
 {
   MetricDescription description;
   std::unique_ptr<const UserMetric> metric;
   MetricInfo info;
   bool listed;
-  std::string mirrored; ///< the facts that another process has sent of its metric; "": one of this
+  std::string mirrored; ///< the facts received from another process; "": registered in this process
 };
 
 /**
- * @brief All that was ever registered. Lists are never changed, but replaced, and never freed:
- * whoever goes through one is not disturbed.
+ * @brief All metrics ever registered. Lists are never modified, only replaced, and never freed, so
+ * that concurrent readers are safe.
  */
 struct Registry
 {
   std::mutex mutex;
   std::deque<Registered> metrics;
   std::deque<std::vector<MetricInfo>> lists;
-  std::atomic<const std::vector<MetricInfo>*> current{ nullptr }; ///< null: none was registered
+  std::atomic<const std::vector<MetricInfo>*> current{ nullptr }; ///< null: none registered
   std::string errors;
 };
 
 Registry& registry()
 {
-  static Registry& instance = *new Registry; // static objects of other libraries may outlive it
+  static Registry& instance = *new Registry; // must outlive static objects of other libraries
   return instance;
 }
 
@@ -80,8 +80,8 @@ void completeDescription(MetricDescription& d)
     !std::all_of(d.name.begin(), d.name.end(), valid))
   {
     throw Error("'" + d.name +
-      "' cannot be the name of a metric: it takes lower case letters, digits and underscores, and "
-      "starts with a letter.");
+      "' cannot be the name of a metric: use lower-case letters, digits and underscores, "
+      "starting with a letter.");
   }
   d.label = d.label.empty() ? d.name : d.label;
   d.symbol = d.symbol.empty() ? d.name : d.symbol;
@@ -162,7 +162,7 @@ bool isMirrored(const MetricInfo& info)
   return dynamic_cast<const MirroredMetric*>(info.user) != nullptr;
 }
 
-/// Throws Error if another metric is found by one of the names.
+/// Throws Error if another metric already has one of the names.
 void requireFree(const MetricDescription& d)
 {
   std::vector<std::string> names = { d.name, d.label, d.symbol };
@@ -176,8 +176,8 @@ void requireFree(const MetricDescription& d)
     const MetricInfo* other = findMetric(name);
     if (other && !(isMirrored(*other) && other->name == d.name))
     {
-      throw Error("The metric " + d.name + " cannot be registered: there is a metric '" + name +
-        "' (" + other->label + ") already. Choose another name, label, symbol or alias" +
+      throw Error("The metric " + d.name + " cannot be registered: there already is a metric '" +
+        name + "' (" + other->label + "). Choose another name, label, symbol or alias" +
         (other->user ? ", or remove the other one first." : "."));
     }
   }
@@ -201,7 +201,7 @@ const MetricInfo* registeredMetric(Metric metric)
       return &info;
     }
   }
-  // One that was removed may be in use still.
+  // A removed metric may still be in use.
   Registry& all = registry();
   const std::lock_guard<std::mutex> lock(all.mutex);
   for (auto r = all.metrics.rbegin(); r != all.metrics.rend(); ++r)
@@ -221,7 +221,7 @@ UserMetric::~UserMetric() = default;
 void UserMetric::evaluateElements(
   CellType type, Index count, const double* points, double* values) const
 {
-  // Only metrics of many elements are evaluated in this way.
+  // Only metrics of many elements are evaluated this way.
   const int nodes = topology(type).nodes;
   for (Index i = 0; i < count; ++i)
   {
@@ -235,7 +235,8 @@ void UserMetric::evaluateAlong(CellType type, int count, int stride, const doubl
 {
   const CellTopology& t = topology(type);
   const bool ofCorners = this->Argument == MetricArgument::Corners;
-  // The derivative by argument (r, c) of T, or (c, r) of the corners, counts along[c].
+  // The derivative with respect to argument (r, c) of T, or (c, r) of the corners, is weighted by
+  // along[c].
   const int rows = ofCorners ? 3 : t.dimension, columns = ofCorners ? t.nodes : t.dimension;
   std::vector<double> all(static_cast<std::size_t>(rows) * columns * stride);
   this->evaluate(type, count, stride, arguments, values, all.data());
@@ -337,7 +338,7 @@ public:
   }
   void evaluate(CellType, int, int, const double*, double*, double*) const override
   {
-    throw Error("A metric of many elements is not evaluated for some of them.");
+    throw Error("A metric of many elements cannot be evaluated for only some of them.");
   }
   void evaluateElements(
     CellType type, Index count, const double* points, double* values) const override
@@ -381,7 +382,7 @@ void unregisterMetric(const std::string& name)
 void loadMetrics(const std::string& library)
 {
   const std::string before = metricLoadErrors();
-  // Never unloaded: its metrics stay.
+  // Never unloaded, because its metrics stay registered.
   if (!dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE))
   {
     const char* reason = dlerror();
@@ -405,7 +406,7 @@ void loadMetrics(const std::string& library)
 //------------------------------------------------------------------------------
 void loadMetricsOfEnvironment()
 {
-  // Not std::call_once: a library that is loaded may look metrics up itself.
+  // Not std::call_once, because a loaded library may look up metrics itself.
   static std::atomic<bool> begun{ false };
   if (begun.load(std::memory_order_relaxed) || begun.exchange(true))
   {

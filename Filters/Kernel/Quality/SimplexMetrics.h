@@ -7,8 +7,8 @@
  *
  * The invariants are the squared edge lengths (in the order of CellTopology::edgeNodes), in 3D the
  * squared areas of the faces (face i opposite vertex i), and the signed area or volume; a metric is
- * a formula in them and its partial derivatives. The chain rule to the vertices is in
- * EvaluateSimplex.cxx, where metrics are listed; their facts are in MetricRegistry.cxx.
+ * a formula in them and its partial derivatives. The chain rule to the vertices and the list of
+ * metrics are in EvaluateSimplex.cxx; their facts are in MetricRegistry.cxx.
  *
  * Sources: Shewchuk, "What is a good linear element? Interpolation, conditioning, and quality
  * measures" (2002); dissertation Table 2.2 and section 3.2.1.
@@ -63,8 +63,8 @@ struct CircumradiusOverInradius
     }
     else
     {
-      // R = D / (6 V) and r = 3 V / S, with D the area of the triangle whose sides are the products
-      // of opposite edges and S the sum of the face areas: R/r = D S / (18 V^2).
+      // R = D / (6 V) and r = 3 V / S, where D is the area of the triangle whose sides are the
+      // products of opposite edges, and S is the sum of the face areas: R/r = D S / (18 V^2).
       const Packet p0 = s.edge2[0] * s.edge2[5];
       const Packet p1 = s.edge2[1] * s.edge2[3];
       const Packet p2 = s.edge2[2] * s.edge2[4];
@@ -113,7 +113,7 @@ void scale(SimplexInvariants<N>& d, Packet factor)
   d.size *= factor;
 }
 
-/// q = sqrt(R / r), with the sign of the size: the dissertation's form.
+/// q = sqrt(R / r), with the sign of the size: the form of the dissertation.
 struct RadiusRatio : SimplexMetric
 {
   template <int N>
@@ -250,7 +250,7 @@ struct InterpolationScaleInvariant : SimplexMetric
   {
     if constexpr (N == 2)
     {
-      // One reciprocal cube root per edge: their product cannot overflow before they do.
+      // Take one reciprocal cube root per edge: their product only overflows if they do.
       d.size = inverseCbrt(s.edge2[0]) * inverseCbrt(s.edge2[1]) * inverseCbrt(s.edge2[2]);
       const Packet q = s.size * d.size;
       for (int e = 0; e < 3; ++e)

@@ -10,18 +10,18 @@ namespace tautline
 {
 namespace
 {
-/// Beyond the ends of a range by this, relative to their size or to 1, a value still counts as
-/// inside.
+/// The tolerance at the ends of a range, relative to their size or to 1, within which a value is
+/// still inside.
 constexpr double roundingTolerance = 1e-12;
 
-/// The range with what rounding may add to it.
+/// The range widened by the rounding tolerance.
 Range widened(const Range& range)
 {
   return { range.low - roundingTolerance * std::max(1.0, std::abs(range.low)),
     range.high + roundingTolerance * std::max(1.0, std::abs(range.high)) };
 }
 
-/// For each of the 256 cell types whether the metric is defined on it.
+/// For each of the 256 cell types: whether the metric is defined on it.
 std::array<bool, 256> definedTypes(const MetricInfo& info)
 {
   std::array<bool, 256> table;
@@ -39,9 +39,9 @@ std::array<bool, 256> definedTypes(const MetricInfo& info)
 namespace
 {
 /**
- * Finds the values at given places of the sorted order without sorting: counts values by the
- * leading bits of their representation, then sorts only the few buckets that hold a requested
- * place.
+ * Finds the values at given positions of the sorted order without sorting: counts values by the
+ * leading bits of their representation, then sorts only the few buckets that contain a requested
+ * position.
  */
 class OrderStatistics
 {
@@ -93,7 +93,7 @@ private:
   static constexpr signed char NoSlot = -1;
   static constexpr std::size_t Buckets = std::size_t(1) << Bits;
 
-  /// Leading bits of a key that is ordered as the values are.
+  /// The leading bits of a key with the same order as the values.
   static std::size_t bucketOf(double v)
   {
     constexpr std::uint64_t signBit = std::uint64_t(1) << 63;
@@ -111,7 +111,7 @@ private:
   }
 
   std::vector<Index> Starts;       ///< number of values in the buckets before each
-  std::vector<signed char> SlotOf; ///< position in Sorted of each bucket with a requested place
+  std::vector<signed char> SlotOf; ///< position in Sorted of each bucket with a requested position
   std::vector<std::vector<double>> Sorted;
 };
 }
@@ -171,7 +171,7 @@ std::vector<WorstElement> worstElements(const MetricInfo& info, const CellValues
 {
   const auto defined = definedTypes(info);
   auto worse = [&](const WorstElement& a, const WorstElement& b) { return isWorse(info, a, b); };
-  std::vector<WorstElement> heap; // its front is the best of those kept
+  std::vector<WorstElement> heap; // its front is the best of the kept elements
   for (Index i = 0; i < data.cells; ++i)
   {
     const signed char v = data.validity[i];
@@ -220,7 +220,7 @@ MetricStatistics summarize(
   const double n = static_cast<double>(measured.size());
   const Range acceptable = info.acceptable(dimension);
   const Range tolerated = widened(acceptable);
-  // Variables: clang refuses structured bindings in a region of OpenMP.
+  // Named variables, because clang does not support structured bindings in OpenMP regions.
   const double lowest = tolerated.low, highest = tolerated.high;
   // Reductions in lanes: their order is fixed by the vector width, not by the threads.
   double minimum = measured.front(), maximum = measured.front();
@@ -237,8 +237,9 @@ MetricStatistics summarize(
   result.minimum = minimum;
   result.maximum = maximum;
   result.outsideAcceptable = outside;
-  // Scaled by a power of two that brings the largest near 1, so that squares neither overflow nor
-  // vanish; the deviation in a second pass, so that it is right for nearly equal values.
+  // Scale by a power of two that brings the largest near 1, so that squares neither overflow nor
+  // underflow; compute the deviation in a second pass, so that it is accurate for nearly equal
+  // values.
   const double largest = std::max(std::abs(result.minimum), std::abs(result.maximum));
   constexpr int farthestExponent = 1000;
   const int exponent =
@@ -286,7 +287,7 @@ MetricStatistics summarize(
 
 namespace
 {
-/// The ends of the values; 0 and 1 without any.
+/// The range of the values; 0 to 1 if there are none.
 Range extent(const std::vector<double>& measured)
 {
   if (measured.empty())
@@ -315,7 +316,7 @@ Histogram emptyBins(const Range& range, int bins)
   return result;
 }
 
-/// Counts a value in its bin; one beyond an end in the bin at that end.
+/// Counts a value in its bin; values beyond an end are counted in the bin at that end.
 void count(Histogram& result, double value)
 {
   const auto bins = static_cast<double>(result.counts.size());

@@ -14,21 +14,21 @@
 
 namespace tautline
 {
-/// A corner Jacobian in local coordinates, and what is needed to carry a derivative back.
+/// A corner Jacobian in local coordinates, with the data needed to propagate a derivative back.
 template <int N>
 struct Corner
 {
   Packet t[N][N];         ///< T = A W^-1
   Packet inverse[N][N];   ///< W^-1
   Packet root[N][N];      ///< M^(1/2), if the targets have a metric tensor
-  Packet axes[2][3] = {}; ///< 2D: the frame A is taken in
+  Packet axes[2][3] = {}; ///< 2D: the frame of A
   TargetInvariants<N> invariants;
   Packet cofactor[N][N];
-  Packet slope[N][N]; ///< dq/dT of a user's metric; the others give d/d(invariants)
+  Packet slope[N][N]; ///< dq/dT for a user metric; other metrics give d/d(invariants)
   Mask degenerate;
 };
 
-/// Frames of a planar mesh are the mesh's; a mirrored mesh is viewed from the other side.
+/// Planar cells use the frame of the mesh; a mirrored mesh is viewed from the other side.
 inline void planarAxes(const Mesh& mesh, Packet (&axes)[2][3])
 {
   for (int a = 0; a < 2; ++a)
@@ -50,10 +50,10 @@ inline void surfaceNormal(const Batch& batch, int nodes, Packet (&normal)[3])
   cross(a, b, normal);
 }
 
-/// The frame of a surface corner: first edge, and its perpendicular in the corner's plane on the
-/// side that makes the corner positive when it turns as the cell does. Rotation-invariant metrics
-/// depend on the corner's Gram matrix and this sign only, so the frame's own motion adds no
-/// gradient.
+/// The frame of a surface corner: the first edge, and its perpendicular in the plane of the corner,
+/// on the side that makes the corner positive if it turns like the cell. Rotation-invariant metrics
+/// only depend on the Gram matrix of the corner and this sign, so that the motion of the frame does
+/// not contribute to the gradient.
 inline void surfaceAxes(
   const Packet* a, const Packet* b, const Packet* normal, Packet (&axes)[2][3])
 {
@@ -71,7 +71,7 @@ inline void surfaceAxes(
   cross(own, axes[0], axes[1]);
 }
 
-/// Whether the targets have a metric tensor that the metric takes notice of.
+/// Whether the targets have a metric tensor that the metric uses.
 template <class M>
 bool seenByTensor(const BatchContext& context)
 {
@@ -98,7 +98,7 @@ void multiply(const Packet (&left)[N][N], const Packet (&right)[N][N], Packet (&
  * @brief A, column by column.
  * @param normal of a surface, or null
  * @param lengths2 the product of the squared lengths of the columns
- * @return det A, whatever the target: by it a corner is degenerate or not
+ * @return det A, independent of the target; it decides whether a corner is degenerate
  */
 template <int N>
 Packet loadMatrix(const Packet (&edge)[N][3], const Packet* normal, Corner<N>& corner,
@@ -185,7 +185,7 @@ __attribute__((noinline)) void loadTargets(
   }
 }
 
-/// W^-1: a multiple of I where only the size counts, else the target's or the ideal cell's.
+/// W^-1: a multiple of I if only the size matters, otherwise from the target or the ideal cell.
 template <class M, int N>
 void loadInverse(const BatchContext& context, const Batch& batch, int sample, Corner<N>& corner)
 {
@@ -247,8 +247,8 @@ Packet perMagnitude(const Packet (&matrix)[N][N])
 }
 
 /**
- * @brief Scales the targets of cells or targets of extreme size: T is of the size it has in the
- * unit of the mesh, or, where only its shape counts, near 1. Not inlined: it is rare.
+ * @brief Scales the targets of cells or targets of extreme size: T has its size in mesh units or,
+ * if only its shape matters, a size near 1. Not inlined, because it is rare.
  */
 template <int N>
 __attribute__((noinline)) void scaleTarget(const BatchContext& context, const Batch& batch,

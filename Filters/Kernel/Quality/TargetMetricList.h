@@ -12,7 +12,7 @@
 namespace tautline
 {
 /// Calls work with the formula of a metric.
-/// @return what it returns, or nothing for a metric that is no built-in target metric
+/// @return the result of work, or nothing if the metric is not a built-in target metric
 template <class Work>
 auto withTargetMetric(Metric metric, const Work& work) -> decltype(work(InverseMeanRatio()))
 {

@@ -4,8 +4,8 @@
  * @brief Metrics that are functions of T = A W^-1 at the corners of a cell.
  * Internal: not installed.
  *
- * A is the corner Jacobian, W that of the ideal (or another target) cell: T = I if the corner is
- * that of the target. Every metric here depends on T through four invariants,
+ * A is the corner Jacobian, and W is the corner Jacobian of the ideal (or another target) cell: T =
+ * I if the corner matches the target. Every metric here depends on T through four invariants,
  *
  *     norm2 = |T|^2     adj2 = |adj T|^2     det = tau = det T     trace = tr T
  *
@@ -13,7 +13,7 @@
  * is written once, in EvaluateTarget.cxx. n is the dimension, |.| the Frobenius norm.
  *
  * To add one: write a struct with its formula as the comment, list it in EvaluateTarget.cxx, and
- * enter its facts in MetricRegistry.cxx. The tests then check it with all the others.
+ * enter its facts in MetricRegistry.cxx. The tests then include it automatically.
  *
  * Sources: Knupp, "Algebraic mesh quality metrics" (2001); Knupp, "Introducing the target-matrix
  * paradigm" (2012) and the MFEM TMOP numbering mu_k; dissertation sections 2.3, 3.2.1, 4.9.2.
@@ -35,18 +35,18 @@ struct TargetInvariants
   Packet trace = {};
 };
 
-/// What the evaluation must provide for a metric, and whether it breaks down at det T = 0.
+/// The data that the evaluation must provide for a metric, and whether it is singular at det T = 0.
 struct TargetMetric
 {
   static constexpr bool usesAdjugate = false;
   static constexpr bool usesTrace = false;
   /// Whether the formula (or its gradient) is singular at det = 0; the value there is 0.
   static constexpr bool singular = true;
-  /// Whether T is to be the Jacobian scaled to det T = area or volume, whatever the target.
+  /// Whether T is the Jacobian scaled to det T = area or volume, independent of the target.
   static constexpr bool usesSize = false;
   static constexpr bool in2D = true;
   static constexpr bool in3D = true;
-  /// Whether the formula is that of a user's metric.
+  /// Whether the formula belongs to a user metric.
   static constexpr bool user = false;
 };
 

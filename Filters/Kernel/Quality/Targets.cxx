@@ -13,10 +13,10 @@ namespace
 {
 using Matrix = Eigen::Matrix3d;
 
-/// Relative deviation up to which a tensor on a surface counts as isotropic.
+/// The relative deviation up to which a tensor on a surface is treated as isotropic.
 constexpr double isotropyTolerance = 1e-6;
 
-/// Whether numbers are beyond the sizes that are measured as they are.
+/// Whether numbers are outside the range that is measured without scaling.
 bool anyExtreme(const std::vector<double>& numbers)
 {
   return std::any_of(numbers.begin(), numbers.end(),
@@ -36,7 +36,7 @@ Targets makeTargets(const Mesh& mesh, const Make& make)
 {
   const Index cells = mesh.view().numberOfCells;
   Targets targets;
-  // As many matrices per cell as it has samples; other cells have none.
+  // One matrix per sample of each cell; other cells have none.
   targets.offsets.assign(cells + 1, 0);
   for (const CellBlock& block : mesh.blocks())
   {
@@ -83,7 +83,7 @@ Matrix idealInverse(const CellTopology& t, int sample)
 Targets referenceTargets(const Mesh& mesh, const Mesh& reference)
 {
   const MeshView &view = mesh.view(), &other = reference.view();
-  const char* remedy = "Use a reference mesh that differs in its coordinates only.";
+  const char* remedy = "Use a reference mesh that only differs in its coordinates.";
   if (view.numberOfCells != other.numberOfCells || view.numberOfPoints != other.numberOfPoints)
   {
     throw Error("The reference mesh has " + std::to_string(other.numberOfPoints) + " points and " +
@@ -240,8 +240,8 @@ Targets tensorTargets(const Mesh& mesh, const double* tensors)
         if ((m - third * Matrix::Identity()).norm() > isotropyTolerance * m.norm())
         {
           refuse(cell,
-            "anisotropic tensors need a planar or a volume mesh; on a surface give a "
-            "size array instead.");
+            "anisotropic tensors need a planar or a volume mesh; on a surface, use a size "
+            "array instead.");
         }
         m = third * Matrix::Identity();
       }

@@ -4,7 +4,7 @@
  * @brief Target elements: the matrix W of T = A W^-1, for every cell.
  *
  * The default (no targets) is the ideal cell of each type with unit edges. All functions throw
- * Error on data of the wrong length, and name the first cell whose datum cannot be a target.
+ * Error for data of the wrong length, and state the first cell whose datum cannot be a target.
  */
 #ifndef tautline_Targets_h
 #define tautline_Targets_h

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TryMetric.cxx
- * @brief A user's metric is tried before it is registered: its values, derivatives and claims.
+ * @brief Tests a user metric before it is registered: its values, derivatives and declared
+ * properties.
  */
 #include "RegisteredMetrics.h"
 #include "UserMetric.h"
@@ -13,7 +14,7 @@ namespace tautline
 {
 namespace
 {
-/// Numbers between -1 and 1 without a pattern: sums of them are never equal by design.
+/// Numbers between -1 and 1 without a pattern, so that sums are not accidentally equal.
 double irregular(int i)
 {
   // The finalizer of MurmurHash3.
@@ -87,7 +88,7 @@ std::vector<double> matricesNear(int n)
   return t;
 }
 
-/// The rows (or points) of n coordinates turned by a matrix; of T, the columns are turned.
+/// Rotates the rows (or points) of n coordinates by a matrix; for T, the columns are rotated.
 std::vector<double> turned(const std::vector<double>& x, int n, bool matrix)
 {
   // About z in 2D, about all axes in 3D.
@@ -113,7 +114,7 @@ std::vector<double> turned(const std::vector<double>& x, int n, bool matrix)
   return result;
 }
 
-/// A user's metric on elements of one type.
+/// A user metric on elements of one type.
 class Trial
 {
 public:
@@ -147,7 +148,7 @@ public:
     }
     if (this->Description.rotationInvariant)
     {
-      // A corner metric of a planar cell is turned in its plane.
+      // The arguments of a planar cell are rotated in its plane.
       std::vector<double> other = this->Arguments;
       const int n = this->Matrices ? this->N : 3;
       other =
@@ -163,7 +164,7 @@ private:
       "The metric " + this->Description.name + " cannot be registered: it " + problem + ".");
   }
 
-  /// Element by element, as the arguments are interleaved otherwise.
+  /// Element by element, because the arguments are otherwise interleaved.
   std::vector<double> evaluate(const std::vector<double>& arguments) const
   {
     std::vector<double> values(Samples);
@@ -269,7 +270,7 @@ void tryMetric(const MetricDescription& d, const UserMetric& metric)
   {
     if (!(range.low <= range.high))
     {
-      refuse("a range ends before it begins");
+      refuse("the end of a range is below its start");
     }
   }
   if (d.barrier && d.direction != Direction::SmallerIsBetter)

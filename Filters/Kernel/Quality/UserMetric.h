@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file UserMetric.h
- * @brief A metric of one's own: written as a formula, registered by name.
+ * @brief User metrics: written as a formula and registered by name.
  *
- * A registered metric is known to all that know the built-in ones: evaluateMetric(), objectives of
+ * A registered metric is available wherever built-in ones are: evaluateMetric(), objectives of
  * every template, criteria, the filters, ParaView's menus, the shell and Python. There are three
  * kinds:
  *
  *  - a function of T = A W^-1, the Jacobian of a corner relative to the target (JacobianMetric). It
- *    takes targets and a combination of the corners, as the built-in target metrics do;
+ *    supports targets and a combination of the corners, like the built-in target metrics;
  *  - a function of the corners of the element (CornerMetric);
- *  - a function of the corners of many elements at once, without derivatives (ElementsMetric): to
- *    measure, to color, and to optimize by differences for all points at once, which is slow. Those
- *    of Python are of this kind.
+ *  - a function of the corners of many elements at once, without derivatives (ElementsMetric): for
+ *    measuring, coloring, and optimization with finite differences for all points at once, which is
+ *    slow. Python metrics are of this kind.
  *
  * Example: the inverse mean ratio, for T. The derivatives come from automatic differentiation.
  *
@@ -32,12 +32,12 @@
  *     const tautline::Metric ratio = tautline::registerJacobianMetric(facts, Ratio());
  *
  * A struct that also has `template <class Number, int N> void slope(const CornerJacobian<Number,
- * N>& T, Number (&dT)[N][N]) const` gives its derivatives itself; registration compares them with
+ * N>& T, Number (&dT)[N][N]) const` provides its own derivatives; registration compares them with
  * finite differences. Testing/Install/metric_consumer is a complete example.
  *
- * A formula that reads T by norm2() and det() alone is the fastest to optimize on triangles and
+ * A formula that only reads T through norm2() and det() is the fastest to optimize on triangles and
  * tetrahedra: it is evaluated for these two numbers, which are known functions of each vertex. The
- * formula is instantiated with several types of Number, so helper functions are templates, too.
+ * formula is instantiated with several types of Number, so helper functions must also be templates.
  */
 #ifndef tautline_UserMetric_h
 #define tautline_UserMetric_h
@@ -54,31 +54,32 @@
 
 namespace tautline
 {
-/// What registration needs to know of a metric; the counterpart of MetricInfo.
+/// The facts about a metric that registration needs; the counterpart of MetricInfo.
 struct MetricDescription
 {
-  /// Of the cell array: lower case letters, digits and underscores, starting with a letter.
+  /// The name of the cell array: lower-case letters, digits and underscores, starting with a
+  /// letter.
   std::string name;
   std::string label;   ///< for menus; the default is the name
   std::string symbol;  ///< the default is the name
-  std::string aliases; ///< other names, comma separated
+  std::string aliases; ///< other names, comma-separated
   std::string formula;
   std::string source;
   std::string unit;              ///< "", "degrees", "length^n", "1/length", ...
-  bool in2D = true, in3D = true; ///< triangles and quadrilaterals; the others
-  unsigned cellTypes = allTypes; ///< of these dimensions: bits 1 << topologyIndex(type)
+  bool in2D = true, in3D = true; ///< triangles and quadrilaterals; other types
+  unsigned cellTypes = allTypes; ///< within these dimensions: bits 1 << topologyIndex(type)
   Range full = { 0, infinity };  ///< values of valid elements
   Range acceptable = { 0, infinity };
   double ideal = std::numeric_limits<double>::quiet_NaN(); ///< NaN: depends on the size
   Direction direction = Direction::SmallerIsBetter;
   /**
-   * @brief The value of an inverted element. Functions of T: unless it is Larger, a degenerate
-   * corner has the value 0, and in an element with inverted corners only these are combined.
+   * @brief The value of an inverted element. For functions of T, unless it is Larger: a degenerate
+   * corner has the value 0, and in an element with inverted corners, only these are combined.
    */
   InvertedValue inverted = InvertedValue::Unsigned;
   /// Tends to infinity as an element degenerates: objectives are infinite unless all are valid.
   bool barrier = false;
-  bool differentiable = true;    ///< everywhere on valid elements; else almost everywhere
+  bool differentiable = true;    ///< everywhere on valid elements; otherwise almost everywhere
   bool scaleInvariant = false;   ///< with the default target; checked
   bool rotationInvariant = true; ///< checked
 
@@ -86,15 +87,15 @@ struct MetricDescription
   static constexpr double infinity = std::numeric_limits<double>::infinity();
 };
 
-/// What a user's metric is a function of.
+/// The argument of a user metric.
 enum class MetricArgument
 {
   Jacobian, ///< T at a corner, row by row: n^2 numbers
   Corners,  ///< x y z of the corners: 3 numbers each
-  Elements  ///< as Corners, without derivatives
+  Elements  ///< like Corners, without derivatives
 };
 
-/// Evaluates a user's metric. The templates below implement it; it must be thread-safe.
+/// Evaluates a user metric. The templates below implement it; it must be thread-safe.
 class TAUTLINE_KERNEL_EXPORT UserMetric
 {
 public:
@@ -108,39 +109,40 @@ public:
 
   /**
    * @brief Evaluates several elements (or corners) of one type.
-   * @param count how many
+   * @param count their number
    * @param stride argument k of element i is at arguments[k * stride + i]; at least count
    * @param values stride numbers
-   * @param slopes derivatives by the arguments, laid out as these; null: not wanted
+   * @param slopes derivatives with respect to the arguments, with the same layout; null: not
+   *   computed
    */
   virtual void evaluate(CellType type, int count, int stride, const double* arguments,
     double* values, double* slopes) const = 0;
 
   /**
-   * @brief Evaluates elements of one type, at any number, from the calling thread.
+   * @brief Evaluates any number of elements of one type, from the calling thread.
    * @param points x y z of the corners of each element, one element after another
    */
   virtual void evaluateElements(
     CellType type, Index count, const double* points, double* values) const;
 
   /**
-   * @brief Evaluates several elements with the derivatives by the displacement d of one vertex of
-   * each.
-   * @param along n numbers w, of Jacobian: T becomes T + d w^t. One per corner, of Corners: the
-   * corner moves by that times d. Laid out as the arguments
-   * @param slopes by d: n numbers of Jacobian, 3 of Corners
+   * @brief Evaluates several elements with the derivatives with respect to the displacement d of
+   * one vertex of each.
+   * @param along for Jacobian: n numbers w, T becomes T + d w^t. For Corners: one number per
+   * corner, which moves by this times d. With the layout of the arguments
+   * @param slopes derivatives with respect to d: n numbers for Jacobian, 3 for Corners
    *
-   * Unless it is overridden, all derivatives are evaluated.
+   * Unless overridden, all derivatives are evaluated.
    */
   virtual void evaluateAlong(CellType type, int count, int stride, const double* arguments,
     const double* along, double* values, double* slopes) const;
 
   /**
-   * @brief Evaluates a metric that depends on |T|^2 and det T alone.
-   * @param arguments |T|^2, then det T; laid out as those of evaluate()
-   * @param derivatives by |T|^2 and det T, then the second ones: by |T|^2 twice, by one each, by
-   * det T twice; laid out as the arguments. Null: not wanted
-   * @return false, without values, if the metric is no such function, or this is not overridden
+   * @brief Evaluates a metric that only depends on |T|^2 and det T.
+   * @param arguments |T|^2, then det T; with the layout of evaluate()
+   * @param derivatives with respect to |T|^2 and det T, then second derivatives: |T|^2 twice, one
+   * each, det T twice; with the layout of the arguments. Null: not computed
+   * @return false, without values, if the metric is not such a function, or this is not overridden
    */
   virtual bool evaluateInvariants(CellType type, int count, int stride, const double* arguments,
     double* values, double* derivatives) const;
@@ -173,7 +175,7 @@ inline __attribute__((always_inline)) void load(
   }
 }
 
-/// Stores a packet where there is room.
+/// Stores as much of a packet as fits.
 inline void store(Packet x, int first, int stride, double* to)
 {
   const int room = stride - first;
@@ -185,7 +187,7 @@ inline void store(Packet x, int first, int stride, double* to)
   std::memcpy(to + first, &x, room * sizeof(double));
 }
 
-/// Whether a function gives its derivatives.
+/// Whether a function provides its derivatives.
 template <class Function, class Argument, class Slopes, class = void>
 struct HasSlope : std::false_type
 {
@@ -247,7 +249,7 @@ private:
   {
     return type == CellType::Triangle || type == CellType::Quadrilateral;
   }
-  /// Whether the derivatives are found here, and not given by the formula.
+  /// Whether the derivatives are computed here instead of by the formula.
   template <int N>
   static constexpr bool derives =
     !user_metric::HasSlope<Function, CornerJacobian<DualNumber<0>, N>, DualNumber<0>[N][N]>::value;
@@ -469,18 +471,18 @@ private:
 
 /**
  * @brief Values of elements of one type: `points` has x y z of the corners of each of `count`
- * elements, one after another; `values` takes one number each. Values that are not finite become 0.
+ * elements, one after another; `values` receives one number each. Nonfinite values become 0.
  */
 using ElementsFunction =
   std::function<void(CellType type, Index count, const double* points, double* values)>;
 
 /**
- * @brief Registers a metric, for the rest of the process. Its number is made from its name: it is
- * the same in every session, whatever else is registered.
+ * @brief Registers a metric, for the rest of the process. Its number is derived from its name: it
+ * is the same in every session, independent of other registrations.
  *
- * The metric is tried first: its values must be finite on elements near the ideal one, and its
- * derivatives and invariances those that it claims. @throws Error names what is not so, a name or
- * label that is taken, or facts that contradict each other.
+ * The metric is tested first: its values must be finite on elements near the ideal one, and its
+ * derivatives and invariances must be as declared. @throws Error for failed tests, for a name or
+ * label already in use, or for contradictory facts.
  */
 TAUTLINE_KERNEL_EXPORT Metric registerMetric(
   const MetricDescription& description, std::unique_ptr<const UserMetric> metric);
@@ -506,23 +508,23 @@ TAUTLINE_KERNEL_EXPORT Metric registerElementsMetric(
   const MetricDescription& description, ElementsFunction function);
 
 /**
- * @brief Removes a registered metric from the lists; the number remains valid for evaluations under
- * way, and the name can be registered again. @throws Error if no user's metric has the name.
+ * @brief Removes a registered metric from the lists; the number remains valid for running
+ * evaluations, and the name can be registered again. @throws Error if no user metric has the name.
  */
 TAUTLINE_KERNEL_EXPORT void unregisterMetric(const std::string& name);
 
 /**
  * @brief Loads a shared library that registers metrics (MetricRegistration). The libraries in the
  * environment variable TAUTLINE_METRICS, separated by colons, are loaded when metrics are first
- * looked up; what went wrong with these is in metricLoadErrors().
+ * looked up; see metricLoadErrors() for their errors.
  * @throws Error if it cannot be loaded, or a registration in it failed
  */
 TAUTLINE_KERNEL_EXPORT void loadMetrics(const std::string& library);
 
-/// What was wrong with registrations made while a library was loaded, a line each; or "".
+/// The errors of registrations made while a library was loaded, one per line; or "".
 TAUTLINE_KERNEL_EXPORT std::string metricLoadErrors();
 
-/// A registration as a static object of a library: it throws nothing, see metricLoadErrors().
+/// A registration as a static object of a library: it does not throw, see metricLoadErrors().
 class MetricRegistration
 {
 public:

@@ -66,7 +66,7 @@ void mirrorLine(const std::string& line)
   constexpr std::size_t before = 2; // number and label
   if (parts.size() != before + NumberOfFields)
   {
-    return; // of a server of another version: its menus have the label
+    return; // from a server of another version: its menus have the label
   }
   const std::string* field = parts.data() + before;
   const auto number = [field](Field which) { return std::stod(field[which]); };
@@ -120,7 +120,7 @@ void mirrorUserMetrics(const std::string& list)
     }
     catch (const std::exception&)
     {
-      // Not a number where one is expected: as of another version.
+      // Not a number where one is expected: probably another version.
     }
   }
 }
@@ -140,9 +140,9 @@ std::string missingMetric(int number)
   }
   const std::string errors = metricLoadErrors();
   return "The metric " + (info ? "'" + std::string(info->label) + "'" : std::to_string(number)) +
-    " of a user is not registered in this process. Register it in all processes of the server, "
-    "before a state file with it is loaded: name its library in TAUTLINE_METRICS when they start, "
-    "or use tautline.load_metrics()." +
+    " is a user metric that is not registered in this process. Register it in all processes of "
+    "the server before loading a state file that uses it: list its library in TAUTLINE_METRICS "
+    "when they start, or use tautline.load_metrics()." +
     (errors.empty() ? "" : " " + errors);
 }
 }

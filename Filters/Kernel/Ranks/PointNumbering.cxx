@@ -12,7 +12,7 @@ namespace
 {
 constexpr Index NoRow = -1;
 
-/// An item and the place in a list it came from.
+/// An item and its original position in a list.
 struct Entry
 {
   Index id;
@@ -20,15 +20,15 @@ struct Entry
   std::size_t place;
 };
 
-/// A facet by the global ids of its points in increasing order, -1 in front; and how many cells
-/// have it.
+/// A facet, as the global ids of its points in increasing order with leading -1, and its number of
+/// cells.
 struct SharedFacet
 {
   std::array<Index, MaxFaceNodes> ids;
   int cells;
 };
 
-/// The items of a list of points, filed under ranks.
+/// The items of a list of points, grouped by rank.
 template <class Item, class Get>
 RankLists<Item> filed(const ItemsByRank& order, const Get& get)
 {
@@ -62,7 +62,7 @@ struct PointNumbering::Implementation
     const std::vector<int>& owners);
   std::vector<int> findOwners(const std::vector<Index>& ids, std::string& complaint) const;
 
-  /// Combines the values of shared points at their owners and sends the result to all ranks that
+  /// Combines the values of shared points at their owners, and sends the result to all ranks that
   /// have them.
   template <class Item, class Read, class Combine, class Write>
   void combine(const Read& read, const Combine& add, const Write& write) const
@@ -92,7 +92,7 @@ struct PointNumbering::Implementation
   }
 };
 
-/// The lowest rank that has each id, from a directory spread over the ranks.
+/// The lowest rank that has each id, from a directory distributed over the ranks.
 std::vector<int> PointNumbering::Implementation::findOwners(
   const std::vector<Index>& ids, std::string& complaint) const
 {
@@ -114,7 +114,7 @@ std::vector<int> PointNumbering::Implementation::findOwners(
       entries.push_back({ asked.items[entries.size()], rank, entries.size() });
     }
   }
-  // Equal ids stand together, the lowest rank first: it is the owner.
+  // Equal ids are adjacent, the lowest rank first: it is the owner.
   std::sort(entries.begin(), entries.end(),
     [](const Entry& a, const Entry& b) { return a.id != b.id ? a.id < b.id : a.place < b.place; });
   RankLists<int> answers;
@@ -127,7 +127,7 @@ std::vector<int> PointNumbering::Implementation::findOwners(
     if (i > first && entries[i].rank == entries[i - 1].rank)
     {
       complaint = "Global point id " + std::to_string(entries[i].id) +
-        " occurs twice on one MPI rank: give each point an id of its own (filter Generate Global "
+        " occurs twice on one MPI rank: give each point a unique id (filter Generate Global "
         "Ids).";
     }
   }
@@ -178,7 +178,7 @@ void PointNumbering::Implementation::build(const Index* globalIds, const unsigne
   }
 }
 
-/// Rows of the points of this rank; those of all ranks follow each other.
+/// Numbers the rows of the points of this rank; the ranks are numbered consecutively.
 void PointNumbering::Implementation::numberOwned(
   const std::vector<Index>& points, const std::vector<int>& owners)
 {
@@ -300,7 +300,7 @@ void PointNumbering::sum(double* values, int components) const
   {
     return;
   }
-  // One component after the other keeps the items of fixed size.
+  // Process one component after the other, so that items have a fixed size.
   for (int c = 0; c < components; ++c)
   {
     const auto at = [=](Index point) -> double& { return values[components * point + c]; };
@@ -353,11 +353,11 @@ Index PointNumbering::sum(Index value) const
 //------------------------------------------------------------------------------
 namespace
 {
-/// Local points of a facet, -1 where there is none.
+/// The local points of a facet; unused entries are -1.
 using LocalFacet = std::array<Index, MaxFaceNodes>;
 
 /// Calls visit(facet, cells) for each facet that does not have two cells on this rank; cells with
-/// skip flags do not count.
+/// skip flags are ignored.
 template <class Visit>
 void forEachOpenFacet(const Mesh& mesh, const unsigned char* skip, const Visit& visit)
 {
@@ -374,9 +374,9 @@ void forEachOpenFacet(const Mesh& mesh, const unsigned char* skip, const Visit& 
 }
 
 /**
- * The nodes in the middle of edges of the boundary. An edge between two boundary points may be
- * inside, so that these are the edges of facets. Of quadratic triangles and tetrahedra, where an
- * edge of each two corners of a facet is one of the cell.
+ * The middle nodes of boundary edges. Since an edge between two boundary points may be inside, the
+ * edges of facets are used. For quadratic triangles and tetrahedra, where any two corners of a
+ * facet form an edge of the cell.
  */
 class QuadraticEdges
 {
@@ -432,7 +432,8 @@ private:
   std::vector<std::pair<Index, Index>> Edges;
 };
 
-/// The number of cells of each facet on all ranks, added up by a directory spread over the ranks.
+/// The number of cells of each facet on all ranks, summed by a directory distributed over the
+/// ranks.
 std::vector<int> cellsOnAllRanks(MPI_Comm comm, int ranks, const std::vector<SharedFacet>& facets)
 {
   std::vector<int> target;
@@ -443,7 +444,7 @@ std::vector<int> cellsOnAllRanks(MPI_Comm comm, int ranks, const std::vector<Sha
   const ItemsByRank order(target, ranks);
   const RankLists<SharedFacet> asked =
     exchange(comm, filed<SharedFacet>(order, [&](Index i) { return facets[i]; }));
-  // Equal facets stand together in this order.
+  // Equal facets are adjacent in this order.
   std::vector<std::size_t> sorted(asked.items.size());
   std::iota(sorted.begin(), sorted.end(), std::size_t(0));
   std::sort(sorted.begin(), sorted.end(),
@@ -495,7 +496,7 @@ std::vector<unsigned char> globalBoundaryPoints(
     }
     edges.add(facet);
   };
-  // As in Mesh::boundary(), facets that do not have two cells are boundary.
+  // As in Mesh::boundary(), facets that do not have two cells are on the boundary.
   if (all.ranks() == 1)
   {
     forEachOpenFacet(mesh, skip, [&](const LocalFacet& facet, int) { mark(facet); });

@@ -25,8 +25,8 @@ class TAUTLINE_SOLVERS_EXPORT PointNumbering
 {
 public:
   /**
-   * @param globalIds one id per local point, the same on all ranks for the same point; any numbers
-   * from 0 on, any order; null only on one rank
+   * @param globalIds one id per local point, the same on all ranks for the same point; any
+   * nonnegative numbers in any order; null only on one rank
    * @param used one flag per local point, nonzero = has a row (a point that is in a cell and is not
    * eliminated); null: all. The ranks must agree on shared points.
    *
@@ -41,13 +41,13 @@ public:
   Communicator communicator() const;
   int ranks() const;
   Index globalSize() const; ///< rows on all ranks
-  Index firstRow() const;   ///< of this rank's own
+  Index firstRow() const;   ///< first row of this rank
   Index ownedRows() const;
-  const std::vector<Index>& rows() const; ///< the row of each local point, -1 without one
+  const std::vector<Index>& rows() const; ///< the row of each local point; -1 if it has none
   bool owned(Index point) const;
 
   /// Replaces `components` values per local point with a row by their sums over all ranks; others
-  /// stay.
+  /// are unchanged.
   void sum(double* values, int components) const;
   /// Nonzero flags of points with a row become nonzero on every rank that has the point.
   void either(unsigned char* flags) const;
@@ -62,9 +62,9 @@ private:
 };
 
 /**
- * @brief The points of edges (2D) or faces (3D) that exactly one cell on all ranks has (or more
- * than two), of quadratic triangles and tetrahedra with the nodes in the middle of edges; cells
- * with skip flags (ghosts) do not count. Of linear cells on one rank the result of
+ * @brief The points of edges (2D) or faces (3D) that belong to exactly one cell (or more than two)
+ * on all ranks; for quadratic triangles and tetrahedra, including the middle nodes of edges. Cells
+ * with skip flags (ghosts) are ignored. For linear cells on one rank, the result of
  * Mesh::boundary(). Collective.
  * @param globalIds as above; null on one rank
  */

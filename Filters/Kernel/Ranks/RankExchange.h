@@ -19,13 +19,13 @@
 
 namespace tautline
 {
-/// The MPI communicator; the process alone for null.
+/// The MPI communicator; this process alone for null.
 inline MPI_Comm mpiOf(Communicator communicator)
 {
   return communicator ? *static_cast<const MPI_Comm*>(communicator) : MPI_COMM_SELF;
 }
 
-/// Whether a condition holds on some rank.
+/// Whether a condition holds on any rank.
 inline bool onAnyRank(MPI_Comm communicator, bool condition)
 {
   int mine = condition, all = 0;
@@ -33,8 +33,8 @@ inline bool onAnyRank(MPI_Comm communicator, bool condition)
   return all != 0;
 }
 
-/// Throws Error on all ranks if one of them reports an error: an exception on one rank alone
-/// would leave the others waiting.
+/// Throws Error on all ranks if one of them reports an error: an exception on only one rank would
+/// leave the others waiting.
 inline void throwTogether(MPI_Comm communicator, const std::string& complaint)
 {
   if (onAnyRank(communicator, !complaint.empty()))
@@ -44,7 +44,7 @@ inline void throwTogether(MPI_Comm communicator, const std::string& complaint)
   }
 }
 
-/// Items in order of the rank they go to or come from, and how many for each rank.
+/// Items sorted by their destination or source rank, and the number for each rank.
 template <class Item>
 struct RankLists
 {
@@ -52,7 +52,7 @@ struct RankLists
   std::vector<int> counts;
 };
 
-/// The order that files items 0 to n - 1 under their ranks, and how many each rank has.
+/// The order that groups items 0 to n - 1 by rank, and the number for each rank.
 struct ItemsByRank
 {
   std::vector<Index> order;
@@ -76,7 +76,7 @@ struct ItemsByRank
   }
 };
 
-/// Sends each rank its items; what comes back is in order of sender. Collective.
+/// Sends each rank its items; received items are in the order of the senders. Collective.
 template <class Item>
 RankLists<Item> exchange(MPI_Comm communicator, const RankLists<Item>& sent)
 {
@@ -98,7 +98,8 @@ RankLists<Item> exchange(MPI_Comm communicator, const RankLists<Item>& sent)
   return received;
 }
 
-/// The rank that keeps the directory entry of a number: neighbouring numbers spread over all ranks.
+/// The rank that keeps the directory entry of a number: neighboring numbers are spread over all
+/// ranks.
 inline int directoryRank(Index number, int ranks)
 {
   const std::uint64_t mixed = static_cast<std::uint64_t>(number) * 0x9E3779B97F4A7C15u;

@@ -38,7 +38,7 @@ void keepBorders(const TetrahedronMesh& mesh, const std::vector<std::int32_t>& c
   {
     return;
   }
-  // The walls at each edge, by their third points; those inside are there from both sides.
+  // The walls at each edge, by their third points; interior walls are listed from both sides.
   using Entry = std::array<std::int32_t, 4>;
   std::vector<Entry> walls;
   for (TetId t = 0; t < mesh.slots(); ++t)

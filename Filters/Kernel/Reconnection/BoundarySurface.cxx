@@ -52,7 +52,7 @@ SurfacePart boundaryOf(const TetrahedronMesh& mesh)
   return part;
 }
 
-/// The points of facets between regions.
+/// Marks the points of facets between regions.
 std::vector<char> interfacePoints(const TetrahedronMesh& mesh)
 {
   std::vector<char> flags(mesh.pointSlots(), 0);
@@ -78,7 +78,7 @@ bool isEvenPermutation(const TriangleVertices& f, const std::array<Index, MaxFac
   return f[(at + 1) % 3] == nodes[1];
 }
 
-/// 1 if the facets are in the order of TetrahedronMesh::face(), else -1.
+/// 1 if the facets are in the order of TetrahedronMesh::face(), otherwise -1.
 double senseOf(const TetrahedronMesh& mesh, const Features& features)
 {
   const auto& nodes = features.facets.front().nodes;
@@ -100,12 +100,13 @@ double senseOf(const TetrahedronMesh& mesh, const Features& features)
   return 1.0;
 }
 
-/// How far the samples of the input may be from the boundary, as a multiple of the distance: where
-/// a curved part is cut off, they are somewhat farther from the chord than its middle from them.
+/// The largest distance of the input samples from the boundary, as a multiple of the distance
+/// limit: where a curved part is cut off, they are slightly farther from the chord than the middle
+/// of the chord is from the input.
 constexpr double BackFactor = 1.25;
-/// Of each edge, for the samples of facets.
+/// The number of divisions of each edge, for the samples of facets.
 constexpr int SampleDivisions = 2;
-/// Cells of the grid of points along the longest side of its box, at most.
+/// The maximum number of grid cells along the longest side of the box.
 constexpr double MostCells = 100.0;
 /// A box around points.
 struct Box
@@ -142,7 +143,7 @@ void BoundarySurface::PointGrid::build(std::vector<Vec3> points)
   Box box = { points.front(), points.front() };
   std::for_each(points.begin(), points.end(), [&](const Vec3& x) { box.add(x); });
   this->Low = box.low;
-  // On a surface about as many cells as points are met.
+  // On a surface, the number of nonempty cells is about the number of points.
   const Vec3 d = box.high - box.low;
   const double longest = std::max({ d[0], d[1], d[2] });
   const double cells = std::ceil(std::sqrt(static_cast<double>(points.size())));
@@ -156,6 +157,7 @@ void BoundarySurface::PointGrid::build(std::vector<Vec3> points)
     const std::array<Index, 3> c = this->cellOf(x);
     return (c[2] * this->Counts[1] + c[1]) * this->Counts[0] + c[0];
   };
+  // Counting sort of the points by grid cell.
   this->Starts.assign(this->Counts[0] * this->Counts[1] * this->Counts[2] + 1, 0);
   for (const Vec3& x : points)
   {
@@ -189,6 +191,7 @@ bool BoundarySurface::PointGrid::all(const Vec3& low, const Vec3& high, const Vi
   {
     return true;
   }
+  // Cells of a row along x are contiguous.
   const std::array<Index, 3> a = this->cellOf(low), b = this->cellOf(high);
   for (Index k = a[2]; k <= b[2]; ++k)
   {
@@ -226,6 +229,7 @@ bool BoundarySurface::keepsPoints(
   {
     return true;
   }
+  // Every kept point near a former facet must be near a new one.
   Box box = { former[0][0], former[0][0] };
   for (const Facet& f : former)
   {
@@ -237,8 +241,8 @@ bool BoundarySurface::keepsPoints(
 }
 
 //------------------------------------------------------------------------------
-/// Joins corners at the ends of short edges to groups that are smaller than the distance; all
-/// corners of a group touch all its patches.
+/// Joins corners at the ends of short edges into groups that are smaller than the distance limit;
+/// all corners of a group touch all its patches.
 void BoundarySurface::groupCorners(const Features& features, const TetrahedronMesh& changing,
   std::vector<std::vector<std::int32_t>>& touched)
 {
@@ -267,6 +271,7 @@ void BoundarySurface::groupCorners(const Features& features, const TetrahedronMe
       }
     }
   }
+  // Join from the shortest edge on, as long as the bounding box of the group fits the limit.
   std::sort(edges.begin(), edges.end());
   UnionFind groups(changing.pointSlots());
   std::map<Index, Box> boxes;
@@ -287,6 +292,7 @@ void BoundarySurface::groupCorners(const Features& features, const TetrahedronMe
     groups.join(a, b);
     boxes[groups.find(a)] = box;
   }
+  // All corners of a group get the union of its patches.
   std::map<Index, std::vector<Index>> members;
   for (const Edge& edge : edges)
   {
@@ -434,7 +440,7 @@ int BoundarySurface::patchOf(
     {
       continue;
     }
-    // The distance decides only where there is a choice.
+    // The distance is only used if there is a choice.
     const double d = candidates.size() > 1 ? this->Parts[patch].distanceOf(centre) : 0.0;
     if (best == NoId || d < smallest)
     {

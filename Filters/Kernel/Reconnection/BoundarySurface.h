@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BoundarySurface.h
- * @brief The boundary of the input that the boundary of a changing tetrahedral mesh stays close to.
+ * @brief The input boundary, to which the boundary of a changing tetrahedral mesh stays close.
  * Internal: not installed.
  */
 #ifndef tautline_BoundarySurface_h
@@ -18,10 +18,10 @@ namespace tautline
 /**
  * @brief Patches and curves (Features) of the outer boundary of the input, made of its facets.
  *
- * Points keep to their patch or curve; a facet has the patch that all its points touch, and stays
- * within a distance and an angle of it; what the input has stays within 1.25 times the distance of
- * the facets. Corners nearer to each other than the distance may become one. Not changed after
- * construction: threads share it.
+ * Points stay on their patch or curve; a facet belongs to the patch that all its points touch, and
+ * stays within a distance and an angle of it; the input stays within 1.25 times this distance of
+ * the facets. Corners closer to each other than the distance may be merged. Immutable after
+ * construction, so that threads can share it.
  */
 class TAUTLINE_RECONNECTIONKERNEL_EXPORT BoundarySurface
 {
@@ -30,41 +30,42 @@ public:
   BoundarySurface(
     const Mesh& mesh, const TetrahedronMesh& changing, const ReconnectionOptions& options);
 
-  /// Per point of the input: what it may do. Points between regions are fixed.
+  /// Per point of the input: its freedom. Points between regions are fixed.
   const std::vector<PointFreedom>& freedoms() const { return this->Freedoms; }
 
   Vec3 closest(const Vec3& x, const PointFreedom& freedom) const
   {
     return this->Parts[freedom.part].closest(x);
   }
-  /// The freedom of a point at x with the direction there: normal of the patch, tangent of a curve.
+  /// The freedom of a point at x with the local direction: the normal of the patch or the tangent
+  /// of the curve.
   PointFreedom at(const Vec3& x, PointFreedom freedom) const;
-  /// That of a point in a patch.
+  /// The freedom of a point in a patch.
   PointFreedom inPatch(int patch) const;
   /// Whether the two touch a common patch.
   bool touches(const PointFreedom& freedom, int patch) const;
-  /// Whether a point at x, of a corner or curve, may be moved into a corner at y: both are corners
-  /// of a group, or the point of a curve is near and the corner touches all its patches.
+  /// Whether a point at x, on a corner or curve, may be contracted into a corner at y: both are
+  /// corners of a group, or the curve point is near and the corner touches all its patches.
   bool joins(const Vec3& x, const PointFreedom& from, const Vec3& y, const PointFreedom& to) const;
-  /// The patch of a facet on the boundary: at its place, of those that all three points touch; -1
-  /// if there is none.
+  /// The patch of a boundary facet: the nearest of the patches that all three points touch; -1 if
+  /// there is none.
   int patchOf(const std::array<Vec3, 3>& x, const std::array<PointFreedom, 3>& freedoms) const;
   /**
    * @brief Whether a facet, in the order of TetrahedronMesh::face(), is close to a patch at its
-   * centre and the middles of its edges, and turned as the patch is there on average.
+   * center and at the middles of its edges, and has the mean orientation of the patch there.
    */
   bool accepts(const std::array<Vec3, 3>& x, int patch) const;
 
   using Facet = std::array<Vec3, 3>;
   /**
-   * @brief Whether facets may be replaced by others with the same border: samples of the input's
-   * boundary (corners, middles of edges, centres) that are within a bound of the former ones are
-   * within it of the new ones. So all of them stay within it: 1.25 times the distance.
+   * @brief Whether facets may be replaced by others with the same border: samples of the input
+   * boundary (corners, edge middles, centers) that are within a bound of the former facets must be
+   * within it of the new ones. Thus, all samples stay within this bound: 1.25 times the distance.
    */
   bool keepsPoints(const std::vector<Facet>& former, const std::vector<Facet>& facets) const;
 
-  /// The largest distance of the outer boundary of the mesh from that of the input, and back, at
-  /// corners, middles of edges and centres of facets.
+  /// The largest distance, in either direction, between the outer boundaries of the mesh and the
+  /// input, at corners, edge middles and centers of facets.
   double distance(const TetrahedronMesh& changed) const;
 
 private:
@@ -92,13 +93,13 @@ private:
 
   std::vector<SmoothPart> Parts;        ///< first the patches, then the curves
   std::vector<SurfaceProjection> Whole; ///< one: the boundary
-  PointGrid Kept;                       ///< what has to stay near
-  double Distance = 0.0;                ///< that facets may have from the input
+  PointGrid Kept;                       ///< samples that must stay near
+  double Distance = 0.0;                ///< the largest distance of facets from the input
   int Patches = 0;
   std::vector<PointFreedom> Freedoms;
-  std::vector<std::vector<std::int32_t>> Sets; ///< of patches; the first ones have one patch each
+  std::vector<std::vector<std::int32_t>> Sets; ///< of patches; the first sets have one patch each
   double Cosine = 0;
-  double Sense = 1; ///< -1: the facets of the patches are in the other order
+  double Sense = 1; ///< -1: the facets of the patches are in the opposite order
 };
 }
 #endif

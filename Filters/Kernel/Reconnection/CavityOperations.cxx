@@ -7,7 +7,7 @@ namespace tautline
 {
 namespace
 {
-/// Halvings of a step that leaves the boundary.
+/// The number of halvings of a step that leaves the boundary.
 constexpr int SurfaceHalvings = 2;
 }
 
@@ -59,7 +59,7 @@ bool CavityOperations::improves()
 }
 
 /// Whether the replacement keeps the bounds of the count, and its tetrahedra are positive and,
-/// unless that is judged later, above the floor.
+/// unless checked later, above the floor.
 bool CavityOperations::isValidChange()
 {
   const Index size = this->Mesh.size() + static_cast<Index>(this->Change.after.size()) -
@@ -161,7 +161,8 @@ bool CavityOperations::loadStar(PointId v, StarSmoothing& star)
 
 bool CavityOperations::smooth(PointId v, int steps)
 {
-  // In vain since the last change of the star; tentative changes leave no stamps.
+  // Already tried without success since the last change of the star; tentative changes leave no
+  // stamps.
   const bool known = !this->Tentative && this->SmoothedAt[v] > this->Stamps[v];
   if (this->freedoms[v].kind == PointFreedom::Fixed || known)
   {
@@ -188,7 +189,7 @@ bool CavityOperations::smooth(PointId v, int steps)
   const PointFreedom freedom = this->freedomAt(v);
   const auto project = this->projectionOf(freedom);
   double after = this->Smoothing.maximize(p, steps, freedom, project);
-  // A shorter step may keep to the boundary.
+  // A shorter step may stay on the boundary.
   for (int k = 0;
        freedom.isCurved() && k < SurfaceHalvings && after > before && !this->keepsSurface(v, p);
        ++k)
@@ -266,7 +267,7 @@ EdgeMetric CavityOperations::meanMetric(const std::vector<PointId>& points) cons
   return mean;
 }
 
-/// Whether moving v into its neighbour w leaves walls and fixed points as they are.
+/// Whether contracting v into its neighbor w preserves walls and fixed points.
 bool CavityOperations::canContract(PointId v, PointId w, const EdgeRing& ring)
 {
   const PointFreedom& freedom = this->freedoms[v];
@@ -287,8 +288,8 @@ bool CavityOperations::canContract(PointId v, PointId w, const EdgeRing& ring)
   return norm(d - freedom.project(d)) <= this->flatTolerance * norm(d);
 }
 
-/// Sets up the replacement that moves vertex i into vertex j. Returns false where that is not
-/// allowed, or makes a tetrahedron not better than `above`.
+/// Prepares the replacement that contracts vertex i into vertex j. Returns false if it is not
+/// allowed, or if a new tetrahedron is not better than `above`.
 bool CavityOperations::prepareContraction(TetId t, int i, int j, double above)
 {
   const PointId v = this->Mesh.tet(t).vertices[i], w = this->Mesh.tet(t).vertices[j];

@@ -6,9 +6,9 @@
  * Internal: not installed.
  *
  * Qualities of the affected tetrahedra are compared in increasing order, before and after: the
- * first that differs decides. So the smallest quality of the mesh never becomes smaller. Neither do
- * the smallest dihedral angle and the mean ratio of the worst tetrahedra (`QualityFloor`).
- * Operations return whether the mesh changed; changed() then lists the tetrahedra to look at again.
+ * first that differs decides. Thus, the smallest quality of the mesh never decreases, nor do the
+ * smallest dihedral angle and the mean ratio of the worst tetrahedra (`QualityFloor`). Operations
+ * return whether the mesh changed; changed() then lists the tetrahedra to revisit.
  */
 #ifndef tautline_CavityOperations_h
 #define tautline_CavityOperations_h
@@ -23,47 +23,50 @@
 
 namespace tautline
 {
-/// Of the input: no operation makes a tetrahedron that is worse in either.
+/// The worst values of the input: no operation creates a tetrahedron that is worse in either.
 struct QualityFloor
 {
   double smallestAngle = 0; ///< degrees
   double meanRatio = 0;     ///< (mean ratio)^(3/2)
-  /// Tetrahedra of this quality and more are above both.
+  /// Tetrahedra of at least this quality are above both.
   double sufficient = 0;
-  double quality = 0; ///< the smallest one; motions for the mean keep it where it is a metric's
+  /// the smallest quality; motions for the mean preserve it if it is based on a metric
+  double quality = 0;
 };
 
-/// How many operations were accepted, and moves of points.
+/// The numbers of accepted operations and point moves.
 struct OperationCounts
 {
   Index edgeRemovals = 0, faceRemovals = 0, boundarySwaps = 0;
   Index contractions = 0, insertions = 0, moves = 0;
 };
 
-/// What operations keep to, and the freedom of points.
+/// The constraints of operations, and the freedom of points.
 struct OperationRules
 {
-  /// One per point slot of the mesh; those of new points are free.
+  /// One per point slot of the mesh; slots of new points are free.
   std::vector<PointFreedom> freedoms;
-  /// How much longer or shorter new edges may be, where the points have metrics.
+  /// The factor by which new edges may be longer or shorter, if the points have metrics.
   double edgeFactor = 2.0;
-  bool inserts = true;                 ///< whether repairs may insert points
-  bool contracts = true, moves = true; ///< whether facets may be improved by these
-  bool sums = false; ///< ReconnectionObjective::Sum decides, not the worst qualities
+  bool inserts = true; ///< whether repairs may insert points
+  /// whether facets may be improved by contractions and motions
+  bool contracts = true, moves = true;
+  bool sums = false; ///< whether ReconnectionObjective::Sum is used instead of the worst qualities
   QualityFloor floor;
   Index smallestSize = 0, largestSize = 0; ///< bounds of the number of tetrahedra
-  /// Edges between coplanar facets may be removed, facets and edges of the boundary divided.
+  /// Whether edges between coplanar facets may be removed, and facets and edges of the boundary
+  /// divided.
   bool swapsBoundary = false;
-  /// Sine of the largest angle between coplanar facets, or directions that are the same.
+  /// The sine of the largest angle between coplanar facets, or between equal directions.
   double flatTolerance = 0;
-  /// Of BoundaryMotion::OnSurface, else null.
+  /// For BoundaryMotion::OnSurface, otherwise null.
   std::shared_ptr<const BoundarySurface> surface;
-  /// With qualities in the metric: the metric at any place; else null.
+  /// With qualities in the metric: the metric at any position; otherwise null.
   std::shared_ptr<const InputMetric> field;
   /// The class of each facet that may be labeled, from 1 on, by its label; others have class 0.
-  /// Edges between facets of different classes stay.
+  /// Edges between facets of different classes are preserved.
   std::vector<std::int32_t> classes;
-  /// Per point of the input whether it is not manifold. An edge between two of these may have
+  /// Per point of the input: whether it is nonmanifold. An edge between two of these may have
   /// tetrahedra that are not connected through faces, and is not split.
   std::vector<char> nonManifold;
 };
@@ -77,48 +80,49 @@ public:
   }
 
   /// Removes the edge of vertices i and j of a tetrahedron: Klincsek's dynamic programming finds
-  /// the triangulation of its ring with the best worst tetrahedron.
+  /// the triangulation of its ring that maximizes the worst tetrahedron.
   bool removeEdge(TetId t, int i, int j);
-  /// Removes face i, with faces beside it that the same two vertices see, and connects these two.
+  /// Removes face i, and adjacent faces visible from the same two vertices, and connects these two
+  /// vertices.
   bool removeFaces(TetId t, int i);
-  /// Moves a vertex to where the smallest quality of its star is largest.
+  /// Moves a vertex to maximize the smallest quality of its star.
   bool smooth(PointId v, int steps);
-  /// Moves a vertex so that the sum of the inverse mean ratios around decreases and nothing falls
+  /// Moves a vertex so that the sum of the inverse mean ratios around decreases without falling
   /// below the floor. @return the decrease
-  /// @param least a smaller decrease is none
+  /// @param least a smaller decrease is ignored
   double improveMean(PointId v, double least = 0.0);
-  /// Sets what a motion has to gain; points that could not be moved are tried again.
+  /// Sets the minimum gain of a motion; points that could not be moved are tried again.
   void setLeastGain(double gain)
   {
     this->Smoothing.leastGain = gain;
     this->SmoothedAt.assign(this->Mesh.pointSlots(), 0);
   }
-  /// Moves vertex i of a tetrahedron into vertex j, which removes the tetrahedra of their edge.
+  /// Contracts vertex i of a tetrahedron into vertex j, which removes the tetrahedra at their edge.
   bool contract(TetId t, int i, int j);
-  /// Puts a point into the tetrahedron, one of its faces or edges, and connects it with the faces
-  /// of a cavity; point and cavity are the best found before the mesh is changed.
+  /// Inserts a point into the tetrahedron or one of its faces or edges, and connects it to the
+  /// faces of a cavity; the best point and cavity are determined before the mesh is changed.
   bool insert(TetId t);
 
-  ///@{ With qualities in the metric: operations for the lengths of edges.
-  /// Divides the edge of vertices i and j of a tetrahedron in two of the same length.
+  /// @{ With qualities in the metric: operations for the lengths of edges. Divides the edge of
+  /// vertices i and j of a tetrahedron into two of equal length.
   bool splitEdge(TetId t, int i, int j);
-  /// Moves one of the vertices i and j into the other one, where no edge becomes too long.
+  /// Contracts one of the vertices i and j into the other, if no edge becomes too long.
   bool contractEdge(TetId t, int i, int j);
-  /// Moves a point so that the sum over the tetrahedra around of the inverse mean ratios, and of
-  /// the squared logarithms of the lengths of its edges, decreases.
+  /// Moves a point to reduce the sum of the inverse mean ratios of the surrounding tetrahedra and
+  /// of the squared logarithms of the lengths of its edges.
   bool relax(PointId v);
   ///@}
 
   /**
    * @brief Improves a facet of the outer boundary: swaps or contracts one of its edges, or moves
-   * one of its points. The smallest mean ratio of the facets that change becomes larger. The
-   * tetrahedra at them may become worse, to a part of the smallest quality around (Tolerated) and
+   * one of its points. The smallest mean ratio of the changed facets increases. The adjacent
+   * tetrahedra may become worse, down to a fraction of the smallest quality around (Tolerated) but
    * not below the floor.
    */
   bool improveFacet(TetId t, int i);
 
-  /// A change that may make qualities worse at first, and becomes an improvement by moving the
-  /// vertices around. Where it does not, everything is as before.
+  /// A change that may initially reduce qualities, and becomes an improvement after moving the
+  /// surrounding vertices. If it does not, everything is restored.
   enum class Compound
   {
     Insertion,
@@ -128,13 +132,13 @@ public:
   bool tryCompound(TetId t, Compound kind);
   /// The largest number of swaps and insertions that follow a tentative change.
   int repairs = 0;
-  /// Set where the bounds of the number of tetrahedra did not allow an operation.
+  /// Set if the bounds of the number of tetrahedra prevented an operation.
   bool countLimited = false;
 
   const std::vector<TetId>& changed() const { return this->Created; }
   const OperationCounts& counts() const { return this->Counts; }
   void addCounts(const OperationCounts& counts);
-  /// Increases with each change near a point: its own moves and those of its neighbours.
+  /// Increases with each change near a point: moves of the point or of its neighbors.
   std::uint32_t stamp(PointId v) const { return this->Stamps[v]; }
   std::uint32_t clock() const { return this->Clock; }
   void prepareStamps()
@@ -151,30 +155,30 @@ private:
     int face;
     double quality;
   };
-  /// A cavity and the point to be connected with its faces.
+  /// A cavity and the point to connect to its faces.
   struct Insertion
   {
     std::vector<TetId> tets;
     Vec3 point = { 0, 0, 0 };
     PointFreedom freedom; ///< of the point: not Free on the boundary
-    /// On a curved boundary: the facets that the point divides, and how many.
+    /// On a curved boundary: the facets that the point divides, and their number.
     std::array<TriangleVertices, 2> opened = {};
     int openedCount = 0;
     double quality = -1;
   };
 
-  /// A step that was carried out tentatively: a replacement, the motion of a point (nothing
-  /// before), or the use of a point for an insertion (nothing created).
+  /// A tentatively performed step: a replacement, the motion of a point (nothing before), or the
+  /// use of a point for an insertion (nothing created).
   struct Step
   {
     std::vector<TetVertices> before;
     std::vector<TetId> created;
-    std::vector<double> qualities; ///< of `before`; where a point was moved, of `created`
+    std::vector<double> qualities; ///< of `before`; if a point was moved, of `created`
     bool opensBoundary = false;
     PointId point = NoId;
     Vec3 position = { 0, 0, 0 };
     bool isReused = false; ///< whether the point for an insertion existed
-    PointFreedom freedom;  ///< its former one
+    PointFreedom freedom;  ///< its former freedom
     EdgeMetric metric = {};
   };
 
@@ -225,7 +229,7 @@ private:
   bool decreasesSum() const;
   bool canTriangulateForSum(const EdgeRing& ring);
   double excess(const TetVertices& v) const;
-  /// What tetrahedra have to be better than, where one of this quality is replaced.
+  /// The bound that tetrahedra must exceed when a tetrahedron of this quality is replaced.
   double leastOf(TetId t) const { return this->sums ? 0.0 : this->Mesh.quality(t); }
   // For facets.
   bool swapFacet(TetId t, int i, int j);
@@ -261,13 +265,13 @@ private:
   TetrahedronMesh& Mesh;
   OperationCounts Counts;
   std::vector<std::uint32_t> Stamps;
-  std::vector<std::uint32_t> SmoothedAt; ///< clock at the last motion in vain, per point
-  std::vector<std::uint32_t> RelaxedAt;  ///< the same of relax()
+  std::vector<std::uint32_t> SmoothedAt; ///< clock at the last unsuccessful motion, per point
+  std::vector<std::uint32_t> RelaxedAt;  ///< the same for relax()
   std::uint32_t Clock = 0;
   Replacement Change;
   std::vector<TetId> Created, Star, OtherStar, Fan;
   std::vector<std::int32_t> Walls;
-  std::vector<TetId> Cells; ///< of the input, per point slot: near it; NoId: not known
+  std::vector<TetId> Cells; ///< of the input, per point slot: a nearby cell; NoId: unknown
   std::vector<double> Before, After;
   StarSmoothing Smoothing;
   EdgeRing Ring;
@@ -275,9 +279,9 @@ private:
   std::array<std::array<int, EdgeRing::MaxSize + 1>, EdgeRing::MaxSize + 1> Middle;
   std::vector<CavityFace> CavityFaces;
   std::vector<TetId> Cavity;
-  // Of a compound operation.
+  // Whether a compound operation is in progress.
   bool Tentative = false;
-  bool OfFacets = false; ///< the facets of a change decide, not its tetrahedra
+  bool OfFacets = false; ///< whether the facets of a change decide instead of its tetrahedra
   std::vector<Step> Steps;
   std::vector<TetId> Affected;
 };

@@ -6,18 +6,20 @@ namespace tautline
 {
 namespace
 {
-/// A tentative change may lower the smallest quality to this fraction.
+/// A tentative change may reduce the smallest quality to this fraction.
 constexpr double Tolerated = 0.5;
-/// Of the insertions found, so many of the best are tried.
+/// The number of best insertions that are tried.
 constexpr std::size_t MaxInsertions = 4;
-/// Rounds of smoothing before a tentative change is judged, and steps of each vertex in a round.
+/// The number of smoothing rounds before a tentative change is evaluated, and of steps per vertex
+/// in a round.
 constexpr int Rounds = 4, RoundSteps = 2;
 /// After these, the worst tetrahedron is repaired if its quality is at least this fraction of the
 /// quality before the change.
 constexpr double Repairable = 0.5;
 }
 
-/// Moves the vertices of the affected tetrahedra; true as soon as all of these are above a quality.
+/// Moves the vertices of the affected tetrahedra; returns true as soon as all of these exceed a
+/// quality.
 bool CavityOperations::smoothAround(double above)
 {
   this->cleanAffected();
@@ -47,7 +49,7 @@ bool CavityOperations::smoothAround(double above)
   return false;
 }
 
-/// Removes tetrahedra from the affected ones that are no more, and repetitions.
+/// Removes deleted tetrahedra and repetitions from the affected ones.
 void CavityOperations::cleanAffected()
 {
   std::vector<TetId>& tets = this->Affected;
@@ -83,8 +85,8 @@ bool CavityOperations::repair(TetId t)
   return this->inserts && this->findInsertion(t, best) && this->applyInsertion(best);
 }
 
-/// After a change that smoothing did not make an improvement: repairs the worst of the affected
-/// tetrahedra, again and again.
+/// After a change that smoothing did not turn into an improvement: repeatedly repairs the worst of
+/// the affected tetrahedra.
 bool CavityOperations::repairAround(double above)
 {
   for (int k = 0; k < this->repairs; ++k)
@@ -123,7 +125,7 @@ bool CavityOperations::finishCompound(double above)
   return true;
 }
 
-/// Gives a point that is not used its former place and freedom.
+/// Restores the former position and freedom of an unused point.
 void CavityOperations::restorePoint(const Step& step)
 {
   this->Mesh.movePoint(step.point, step.position, {}, nullptr);
@@ -170,7 +172,7 @@ void CavityOperations::undo()
   }
 }
 
-/// Makes a tentative change, moves the vertices around, and keeps both or neither.
+/// Makes a tentative change, moves the surrounding vertices, and keeps both or neither.
 template <class Operation>
 bool CavityOperations::attempt(double above, const Operation& operation)
 {

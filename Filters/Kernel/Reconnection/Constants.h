@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Constants.h
- * @brief What the reconnection of tetrahedra and that of triangles have in common.
- * Internal: not installed.
+ * @brief Constants shared by the reconnection of tetrahedra and of triangles. Internal: not
+ * installed.
  */
 #ifndef tautline_ReconnectionConstants_h
 #define tautline_ReconnectionConstants_h
@@ -18,28 +18,30 @@ inline double radians(double degrees)
 
 /// A cell this close to the bound of its quality is at it.
 constexpr double AtBound = 1e-3;
-/// Two qualities that differ by less are the same: rounding must not decide.
+/// Two qualities that differ by less are equal: rounding must not decide.
 constexpr double SameQuality = 1e-9;
 /// With ReconnectionOptions::adapt, tetrahedra below this quality are below the target: a mean
 /// ratio in the metric of 0.5.
 constexpr double AdaptedQuality = 0.35;
-/// A smaller part of the volume of a tetrahedron, or of the area of a triangle, is rounding.
+/// A smaller fraction of the volume of a tetrahedron, or of the area of a triangle, is rounding
+/// error.
 constexpr double RoundingFraction = 1e-12;
 /// Rounding in the distance from a flat patch, relative to the diagonal.
 constexpr double LeastDistance = 1e-12;
 /// Angle of the preset RemoveSlivers; the other presets use the default of the options.
 constexpr double SliverAngle = 15.0;
-/// Wall time between two calls of the observer during a pass.
+/// The wall time between two calls of the observer during a pass.
 constexpr double ObserverSeconds = 0.1;
 
-/// Sweeps for the mean end when one decreases the sum by less than this part, or after this many.
+/// Sweeps for the mean end when one decreases the sum by less than this fraction, or after this
+/// number.
 constexpr double LeastMeanDecrease = 2e-5;
 constexpr int MaxMeanSweeps = 60;
-/// Points between two calls of the observer in these.
+/// The number of points between two calls of the observer in these sweeps.
 constexpr int MeanInterval = 256;
-/// Halvings of a step that is too long.
+/// The number of halvings of a step that is too long.
 constexpr int Halvings = 6;
-/// A decrease that is kept, relative to the sum.
+/// The smallest decrease that is kept, relative to the sum.
 constexpr double LeastDecrease = 1e-7;
 }
 #endif

@@ -1,12 +1,12 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// What operations may do on a boundary that is kept within a distance.
+// SPDX-License-Identifier: BSD-3-Clause The permitted operations on a boundary that is kept within
+// a distance.
 #include "CavityOperations.h"
 
 namespace tautline
 {
 namespace
 {
-/// Facets of this many points in common with the ends of an edge are its walls.
+/// Facets that share this many points with the ends of an edge are its walls.
 constexpr std::size_t WallsOfEdge = 2;
 
 TriangleVertices sorted(TriangleVertices f)
@@ -31,8 +31,7 @@ std::size_t countCommon(const std::vector<Number>& a, const std::vector<Number>&
   return common.size();
 }
 
-/// The link of a point: its neighbours, those beside it on the boundary, and the edges that face
-/// it.
+/// The link of a point: its neighbors, its neighbors on the boundary, and the edges that face it.
 struct PointLink
 {
   std::vector<PointId> points, boundary;
@@ -100,7 +99,8 @@ bool CavityOperations::keepsSurface(const TriangleVertices& f) const
   return patch != NoId && this->surface->accepts(this->facetOf(f), patch);
 }
 
-/// Whether the facets of a point, whose star is `Star`, keep to the boundary with it at p.
+/// Whether the facets of a point, whose star is `Star`, stay close to the boundary with the point
+/// at p.
 bool CavityOperations::keepsSurface(PointId v, const Vec3& p) const
 {
   std::vector<BoundarySurface::Facet> former, facets;
@@ -131,7 +131,7 @@ bool CavityOperations::keepsSurface(PointId v, const Vec3& p) const
   return this->surface->keepsPoints(former, facets);
 }
 
-/// Whether the facets that the replacement adds to the boundary keep to it.
+/// Whether the facets that the replacement adds to the boundary stay close to it.
 bool CavityOperations::keepsSurface()
 {
   std::vector<TriangleVertices> before;
@@ -172,7 +172,7 @@ bool CavityOperations::keepsSurface()
     {
       return false;
     }
-    // (Faces towards the rest of the mesh count, too: they are at most nearer.)
+    // (Faces toward the rest of the mesh are included: they can only be nearer.)
     if (isNew)
     {
       facets.push_back(this->facetOf(faces[i].second));
@@ -187,7 +187,7 @@ bool CavityOperations::canSwapCurved(const EdgeRing& ring)
 {
   const auto kind = [this](PointId v) { return this->freedoms[v].kind; };
   const PointId first = ring.ring[0], last = ring.ring[ring.vertices - 1];
-  // An edge between two points of curves may be one of a curve, unless its walls are coplanar.
+  // An edge between two curve points may belong to a curve, unless its walls are coplanar.
   if (kind(ring.a) != PointFreedom::InPlane && kind(ring.b) != PointFreedom::InPlane &&
     (!this->isFlat(ring) ||
       this->patchOf({ ring.a, ring.b, first }) != this->patchOf({ ring.a, ring.b, last })))
@@ -200,9 +200,10 @@ bool CavityOperations::canSwapCurved(const EdgeRing& ring)
     [&](TetId t) { return this->Mesh.tet(t).indexOf(last) != NoId; });
 }
 
-/// Whether v may be moved into w, the other end of the edge of an open ring: within its patch or
-/// along its curve, and so that the boundary remains the same surface (the links of v and w meet
-/// only in the link of the edge; T. K. Dey et al., "Topology preserving edge contraction", 1999).
+/// Whether v may be contracted into w, the other end of the edge of an open ring: within its patch
+/// or along its curve, and such that the boundary remains the same surface (the links of v and w
+/// meet only in the link of the edge; T. K. Dey et al., "Topology preserving edge contraction",
+/// 1999).
 bool CavityOperations::canContractCurved(PointId v, PointId w, const EdgeRing& ring)
 {
   if (!this->isOuter(ring))
@@ -230,7 +231,7 @@ bool CavityOperations::canContractCurved(PointId v, PointId w, const EdgeRing& r
   {
     return false;
   }
-  // Nor a facet of v on one of w.
+  // A facet of v must not coincide with a facet of w.
   const TriangleVertices opposite = sorted({ v, first, last });
   for (TetId t : this->Star)
   {
@@ -246,7 +247,7 @@ bool CavityOperations::canContractCurved(PointId v, PointId w, const EdgeRing& r
 }
 
 //------------------------------------------------------------------------------
-/// Sets up the insertion of a point into a facet of the boundary.
+/// Prepares the insertion of a point into a facet of the boundary.
 bool CavityOperations::prepareInsertion(const TriangleVertices& f, Insertion& insertion) const
 {
   const int patch = this->patchOf(f);
@@ -282,7 +283,7 @@ bool CavityOperations::prepareInsertion(const EdgeRing& ring, Insertion& inserti
   }
   else
   {
-    // Of a curve, unless both ends are corners: which one it is, only its points tell.
+    // On a curve, unless both ends are corners: only its points identify the curve.
     freedom = a.kind == PointFreedom::OnLine ? a : b;
     if (freedom.kind != PointFreedom::OnLine || !freedom.isCurved() ||
       (b.kind == PointFreedom::OnLine && b.part != freedom.part))

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CuttingFrames.h
- * @brief Directions of the planes that cut a mesh into blocks, and where a plane is.
- * Internal: not installed.
+ * @brief The directions and positions of the planes that cut a mesh into blocks. Internal: not
+ * installed.
  */
 #ifndef tautline_CuttingFrames_h
 #define tautline_CuttingFrames_h
@@ -17,16 +17,16 @@ namespace tautline
 {
 /**
  * @class tautline::CuttingFrame
- * @brief Three orthogonal directions; no two of different frames are parallel. Planes of the next
- * frame cross what those of the last one have left as walls.
+ * @brief Three orthogonal directions; no two directions of different frames are parallel. The
+ * planes of the next frame cross the walls of the previous one.
  */
 class CuttingFrame
 {
 public:
-  /// How many frames there are.
+  /// The number of frames.
   static constexpr int count = 3;
 
-  /// @param frame 0 to count - 1; 0 is that of the axes
+  /// @param frame 0 to count - 1; 0: the coordinate axes
   explicit CuttingFrame(int frame)
   {
     if (frame == 0)
@@ -38,7 +38,7 @@ public:
     this->Directions = { a, b, cross(a, b) };
   }
 
-  /// Where a place is along a direction.
+  /// The position of a point along a direction.
   double along(int direction, const Vec3& x) const { return dot(this->Directions[direction], x); }
 
   bool before(int direction, const Vec3& a, const Vec3& b) const
@@ -46,7 +46,7 @@ public:
     return this->along(direction, a) < this->along(direction, b);
   }
 
-  /// How far places extend along a direction. There must be some.
+  /// The extent of points along a direction. There must be at least one.
   double extent(
     int direction, std::vector<Vec3>::iterator from, std::vector<Vec3>::iterator to) const
   {

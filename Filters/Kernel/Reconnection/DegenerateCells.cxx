@@ -12,14 +12,14 @@ namespace tautline
 {
 namespace
 {
-/// Of the longest edge: a shorter one has its ends at one place.
+/// Fraction of the longest edge: the ends of a shorter edge coincide.
 constexpr double ShortEdge = 1e-9;
-/// Of the longest edge: a point that is nearer to another edge is on it.
+/// Fraction of the longest edge: a point closer to another edge is on it.
 constexpr double OnEdge = 1e-9;
-/// Operations per degenerate cell of the input, after which what is left stays.
+/// The number of operations per degenerate input cell, after which the remaining ones are kept.
 constexpr Index OperationsPerCell = 50;
 
-using Nodes = std::array<Index, 4>; ///< of a triangle the last one is -1
+using Nodes = std::array<Index, 4>; ///< for a triangle, the last one is -1
 using Simplex = std::vector<Index>; ///< in increasing order
 
 class CellRemover
@@ -63,7 +63,7 @@ private:
   std::vector<Nodes> Cells;
   std::vector<char> Alive;
   std::vector<Index> Origins;
-  std::vector<std::vector<Index>> CellsOf; ///< per point; also cells that are not alive
+  std::vector<std::vector<Index>> CellsOf; ///< per point; including deleted cells
   std::vector<Index> MergedInto;
   std::vector<std::array<Index, 2>> Edges;
   std::vector<std::array<Index, 3>> Facets;
@@ -142,7 +142,7 @@ Nodes CellRemover::replaced(Index cell, Index from, Index to) const
   return nodes;
 }
 
-/// Whether a cell may become one with other nodes: it keeps its orientation.
+/// Whether a cell may get other nodes: its orientation must not change.
 /// @param mayVanish whether it may become degenerate
 bool CellRemover::follows(Index cell, const Nodes& nodes, bool mayVanish) const
 {
@@ -158,7 +158,7 @@ bool CellRemover::follows(Index cell, const Nodes& nodes, bool mayVanish) const
   return this->Corners == 4 || dot(this->normalOf(this->Cells[cell]), this->normalOf(nodes)) > 0;
 }
 
-/// The cells with all of some points.
+/// The cells that contain all given points.
 std::vector<Index> CellRemover::cellsAt(const Simplex& points) const
 {
   std::vector<Index> cells;
@@ -190,7 +190,7 @@ void CellRemover::add(const Nodes& nodes, Index origin)
 }
 
 //------------------------------------------------------------------------------
-/// All faces of a simplex, with itself.
+/// Adds all faces of a simplex, including itself.
 void addFaces(const Simplex& simplex, std::set<Simplex>& faces)
 {
   for (unsigned chosen = 1; chosen < 1U << simplex.size(); ++chosen)
@@ -215,7 +215,7 @@ Simplex without(const Simplex& simplex, const Simplex& face)
   return rest;
 }
 
-/// The link of a point or edge, of the mesh with a cone over its boundary, whose apex is -1.
+/// The link of a point or edge in the mesh extended by a cone over its boundary with apex -1.
 std::set<Simplex> CellRemover::linkOf(const Simplex& face) const
 {
   std::map<Simplex, int> facets;
@@ -290,7 +290,7 @@ bool CellRemover::merge(Index from, Index to)
 }
 
 //------------------------------------------------------------------------------
-/// Divides the cells at an edge or a face by a point on it; those that have the point vanish.
+/// Divides the cells at an edge or a face by a point on it; cells that contain the point vanish.
 bool CellRemover::divide(const Simplex& face, Index by)
 {
   const std::vector<Index> cells = this->cellsAt(face);
@@ -372,7 +372,7 @@ bool CellRemover::mergeShortest(const Nodes& nodes)
     (this->merge(ends[0], ends[1]) || this->merge(ends[1], ends[0]));
 }
 
-/// Of a triangle the point opposite its longest edge is on this edge.
+/// In a triangle, the point opposite its longest edge is on this edge.
 bool CellRemover::treatTriangle(const Nodes& nodes)
 {
   int longest = 0;
@@ -386,7 +386,7 @@ bool CellRemover::treatTriangle(const Nodes& nodes)
   return this->divide({ nodes[longest], nodes[(longest + 1) % 3] }, nodes[(longest + 2) % 3]);
 }
 
-/// Of a tetrahedron a point on the edge between two others.
+/// In a tetrahedron, a point on the edge between two others.
 bool CellRemover::divideEdge(const Nodes& nodes)
 {
   double longest = 0;
@@ -413,8 +413,8 @@ bool CellRemover::divideEdge(const Nodes& nodes)
   return false;
 }
 
-/// Of a flat tetrahedron a point in the face of the others: the areas that it makes with their
-/// edges agree.
+/// In a flat tetrahedron, a point in the face of the others: the areas with their edges have the
+/// same orientation.
 bool CellRemover::divideFace(const Nodes& nodes)
 {
   for (int k = 0; k < 4; ++k)
@@ -442,8 +442,8 @@ bool CellRemover::isOpen(Simplex facet) const
   return !marked && this->cellsAt(facet).size() == 1;
 }
 
-/// Drops a flat tetrahedron whose two facets at an edge are on the boundary, which goes on where it
-/// was, with the opposite edge.
+/// Drops a flat tetrahedron with two boundary facets at an edge; the boundary stays in place, with
+/// the opposite edge.
 bool CellRemover::dropFlat(Index cell, const Simplex& edge)
 {
   const Simplex others = without(this->sortedNodes(cell), edge);
@@ -494,12 +494,12 @@ bool CellRemover::treat(Index cell)
 }
 
 //------------------------------------------------------------------------------
-/// Whether anything changed.
+/// Treats all cells once; returns whether anything changed.
 bool CellRemover::treatAll()
 {
   Index operations = OperationsPerCell * static_cast<Index>(this->Waiting.size());
   bool changed = false;
-  // What cannot be removed may be once others have been.
+  // Some cells can only be removed after others.
   for (bool again = true; again && operations > 0;)
   {
     again = false;
@@ -522,7 +522,7 @@ bool CellRemover::treatAll()
   return changed;
 }
 
-/// The parts of a cell are where the cell was, the others in their order.
+/// The parts of a cell take its position; the other cells keep their order.
 void CellRemover::collect(DegenerateRemoval& result)
 {
   std::vector<Index> order;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file EdgeMetric.h
- * @brief The metric in which edges have the length 1, of each point.
- * Internal: not installed.
+ * @brief The metric of each point, in which target edges have length 1. Internal: not installed.
  */
 #ifndef tautline_EdgeMetric_h
 #define tautline_EdgeMetric_h
@@ -15,24 +14,25 @@ namespace tautline
 using EdgeMetric = MetricTensor;
 
 /**
- * @brief The metrics that the options ask for, in the units of the input as converted; empty for
+ * @brief The metrics requested by the options, in the units of the converted input; empty for
  * ReconnectionSize::None. Throws Error for lengths and tensors that are not positive.
  */
 std::vector<EdgeMetric> edgeMetrics(
   const ReconnectionInput& input, const ReconnectionOptions& options);
 
 /**
- * @brief The same of other cells.
- * @param points as converted: times 2^-exponent
+ * @brief The same for other cells.
+ * @param points converted: times 2^-exponent
  * @param lengths the mean length of the edges at each point, with ReconnectionSize::Input
  */
 std::vector<EdgeMetric> edgeMetrics(const std::vector<Vec3>& points, int exponent,
   const std::vector<double>& lengths, const ReconnectionOptions& options);
 
-/// Throws Error where an adaptation would make more elements than there is memory for.
+/// Throws Error if an adaptation would create more elements than fit into memory.
 void requireRoom(double elements, const char* kind, double bytesPerElement);
 
-/// The mean length of the edges at each point, 1 where there are none; edges count once per cell.
+/// The mean length of the edges at each point, 1 if there are none; edges are counted once per
+/// cell.
 template <class Cells>
 std::vector<double> meanEdgeLengths(const std::vector<Vec3>& points, const Cells& cells)
 {

@@ -5,7 +5,7 @@ namespace tautline
 {
 namespace
 {
-/// Steps of the fourth point, and runs of these from where the last one ended.
+/// The number of steps of the fourth point, and of runs that start where the previous one ended.
 constexpr int Steps = 60, Runs = 4;
 constexpr double LeastGain = 1e-5;
 /// Square of the height with the best mean ratio, relative to the sum of the squared edges.

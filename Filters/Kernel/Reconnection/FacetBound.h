@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file FacetBound.h
- * @brief What a facet that stays allows: the best quality of a tetrahedron on it.
- * Internal: not installed.
+ * @brief The bound given by a fixed facet: the best quality of a tetrahedron on it. Internal: not
+ * installed.
  */
 #ifndef tautline_FacetBound_h
 #define tautline_FacetBound_h
@@ -20,8 +20,8 @@ TAUTLINE_RECONNECTIONKERNEL_EXPORT double facetMeanRatio(
   const Vec3& a, const Vec3& b, const Vec3& c);
 
 /**
- * @brief The largest quality of a tetrahedron on a triangle, over all places of the fourth point,
- * to about a thousandth. With the mean ratio alone it is facetMeanRatio().
+ * @brief The largest quality of a tetrahedron on a triangle, over all positions of the fourth
+ * point, to about a thousandth. With the mean ratio alone it is facetMeanRatio().
  * @param smoothing workspace
  */
 TAUTLINE_RECONNECTIONKERNEL_EXPORT double facetQuality(const Vec3& a, const Vec3& b, const Vec3& c,

@@ -9,10 +9,10 @@ namespace tautline
 {
 namespace
 {
-/// A change of a facet may lower the smallest quality of the tetrahedra around to this fraction:
-/// these can be improved later, which a bad facet prevents.
+/// A change of a facet may reduce the smallest quality of the surrounding tetrahedra to this
+/// fraction: they can be improved later, whereas a bad facet prevents this.
 constexpr double LeastShare = 0.3;
-/// What the mean ratio of a facet has to gain, relative to it: less is not worth a change.
+/// The minimum relative gain of the mean ratio of a facet: less does not justify a change.
 constexpr double LeastFacetGain = 1e-2;
 }
 
@@ -21,7 +21,7 @@ double CavityOperations::facetRatio(const TriangleVertices& f) const
   return facetMeanRatio(this->Mesh.point(f[0]), this->Mesh.point(f[1]), this->Mesh.point(f[2]));
 }
 
-/// What the tetrahedra of a change have to be better than.
+/// The bound that the tetrahedra of a change must exceed.
 double CavityOperations::tolerated(const std::vector<TetId>& tets) const
 {
   double least = 1.0;
@@ -56,8 +56,8 @@ bool CavityOperations::swapFacet(TetId t, int i, int j)
   return true;
 }
 
-/// Moves vertex i into vertex j, both on the boundary.
-/// @param ratio what all facets that change have to exceed
+/// Contracts vertex i into vertex j, both on the boundary.
+/// @param ratio the bound that all changed facets must exceed
 bool CavityOperations::contractFacet(TetId t, int i, int j, double ratio)
 {
   const PointId v = this->Mesh.tet(t).vertices[i], w = this->Mesh.tet(t).vertices[j];
@@ -88,7 +88,7 @@ bool CavityOperations::contractFacet(TetId t, int i, int j, double ratio)
   return true;
 }
 
-/// The smallest mean ratio of the walls of a point, whose star is `Star`, with it at p.
+/// The smallest mean ratio of the walls of a point, whose star is `Star`, with the point at p.
 double CavityOperations::smallestFacetRatio(PointId v, const Vec3& p) const
 {
   double smallest = 1.0;
@@ -109,7 +109,7 @@ double CavityOperations::smallestFacetRatio(PointId v, const Vec3& p) const
   return smallest;
 }
 
-/// Moves a point of the boundary towards the centre of its neighbours on it, on its patch or curve.
+/// Moves a boundary point toward the center of its boundary neighbors, on its patch or curve.
 bool CavityOperations::moveFacet(PointId v, double ratio)
 {
   PointFreedom freedom = this->freedoms[v];

@@ -25,7 +25,7 @@ MetricTensor InputMetric::at(const Vec3& x, TetId& cell) const
 {
   cell = this->Locator.nearest(x, cell);
   std::array<double, 4> weights = this->Locator.weights(x, cell);
-  // Outside the input, the nearest place in the cell, more or less.
+  // Outside the input, use approximately the nearest position in the cell.
   double sum = 0.0;
   for (double& w : weights)
   {

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file InputMetric.h
- * @brief The metric of the points of the input, at any place.
- * Internal: not installed.
+ * @brief The metric of the input points, interpolated at any position. Internal: not installed.
  */
 #ifndef tautline_InputMetric_h
 #define tautline_InputMetric_h
@@ -17,12 +16,12 @@ class TAUTLINE_RECONNECTIONKERNEL_EXPORT InputMetric
 {
 public:
   /// @param metrics one per point of the input, positive definite
-  /// @param locator of the input; has to live as long as this
+  /// @param locator of the input; must outlive this object
   InputMetric(const std::vector<MetricTensor>& metrics, const ReconnectionInput& input,
     const InputLocator& locator, int threads);
 
   /// @param cell a cell of the input near x; set to the one that contains x, or the nearest of
-  /// those on the way
+  /// those on the path
   MetricTensor at(const Vec3& x, TetId& cell) const;
 
 private:

@@ -8,20 +8,20 @@ namespace tautline
 {
 namespace
 {
-/// The offsets are repeated, as the normals turn with them, until the volume is kept to this
-/// fraction, and at most so often.
+/// The offsets are repeated, because the normals change with them, until the volume is preserved to
+/// this fraction, at most this many times.
 constexpr double VolumeGoal = 1e-6;
 constexpr int MaxOffsets = 20;
 /// Degrees: points whose triangles differ by less from their mean normal are in a flat part, which
-/// has lost no volume and stays flat.
+/// has not lost volume and stays flat.
 constexpr double LeastBend = 0.1;
 
-/// A point that moves, from where, and twice the vector area of its triangles.
+/// A moving point, its original position, and twice the vector area of its triangles.
 struct Offset
 {
   VertexId point;
   Vec3 start, area;
-  bool back = false; ///< whether it has gone back for good
+  bool back = false; ///< whether it has been permanently restored
 };
 }
 
@@ -29,7 +29,7 @@ struct Offset
 double TriangleOperations::enclosedVolume() const
 {
   double sum = 0.0;
-  VertexId first = NoNumber; // seen from a point of the surface: it may be far from the origin
+  VertexId first = NoNumber; // relative to a point of the surface, which may be far from the origin
   for (TriId t = 0; t < this->Mesh.slots(); ++t)
   {
     if (this->Mesh.alive(t))
@@ -44,7 +44,7 @@ double TriangleOperations::enclosedVolume() const
   return sum / 6.0;
 }
 
-/// The sum of the vector areas of the triangles `Around`, times 2; 0 where these are flat together.
+/// The sum of the vector areas of the triangles `Around`, times 2; 0 if these are coplanar.
 Vec3 TriangleOperations::bentArea() const
 {
   Vec3 sum = { 0, 0, 0 };
@@ -81,7 +81,7 @@ void TriangleOperations::keepVolume(double volume, double leastQuality)
   for (int round = 0; round < MaxOffsets; ++round)
   {
     const double lacking = volume - this->enclosedVolume();
-    double area = 0.0; // what the volume gains by a unit of the offset
+    double area = 0.0; // the volume gained per unit of the offset
     for (Offset& offset : offsets)
     {
       this->Mesh.star(offset.point, this->Around);
@@ -100,7 +100,8 @@ void TriangleOperations::keepVolume(double volume, double leastQuality)
         place(offset, this->Mesh.point(offset.point) + (lacking / (area * length)) * offset.area);
       }
     }
-    // What goes back may make triangles beside it too bad. Each turn takes a point back for good.
+    // A restored point may make adjacent triangles too bad. Each iteration permanently restores a
+    // point.
     for (bool more = true; more;)
     {
       more = false;

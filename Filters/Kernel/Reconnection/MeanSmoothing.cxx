@@ -14,13 +14,13 @@ namespace
 /// The inverse mean ratio is S / (12 (d / 2)^(2/3)), with the sum S of the squared edges and six
 /// times the volume d.
 constexpr double RatioFactor = 12.0;
-/// What an operation has to decrease the sum by, where the sum is the objective.
+/// The minimum decrease of the sum by an operation, if the sum is the objective.
 constexpr double LeastSumDecrease = 1e-3;
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// Sum of the inverse mean ratios with its derivatives; infinite where a volume is not positive.
+/// Sum of the inverse mean ratios with its derivatives; infinite if a volume is not positive.
 struct RatioSum
 {
   double value = 0;
@@ -110,7 +110,7 @@ double CavityOperations::improveMean(PointId v, double least)
 }
 
 //------------------------------------------------------------------------------
-/// What the inverse mean ratio of a tetrahedron exceeds 1; infinite unless it is positive.
+/// The excess of the inverse mean ratio of a tetrahedron over 1; infinite unless it is positive.
 double CavityOperations::excess(const TetVertices& v) const
 {
   const auto x = [&](int k) { return this->Mesh.point(v[k]); };
@@ -133,7 +133,8 @@ bool CavityOperations::decreasesSum() const
   return change < 0.0;
 }
 
-/// As triangulate(), but with the smallest sum; false if that is not smaller than that of the ring.
+/// Like triangulate(), but with the smallest sum; false if that is not smaller than the sum of the
+/// ring.
 bool CavityOperations::canTriangulateForSum(const EdgeRing& ring)
 {
   const int n = ring.vertices;

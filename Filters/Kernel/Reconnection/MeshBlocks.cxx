@@ -13,7 +13,7 @@ namespace tautline
 {
 namespace
 {
-/// Of so many tetrahedra one decides where the planes are.
+/// One of this many tetrahedra is sampled to determine the planes.
 constexpr TetId SampleStep = 16;
 
 Vec3 sumOfVertices(const TetrahedronMesh& mesh, TetId t)
@@ -33,6 +33,7 @@ std::vector<std::uint8_t> partition(const TetrahedronMesh& mesh, int frame, int 
       sample.push_back(sumOfVertices(mesh, t));
     }
   }
+  // Planes through the medians of a sample divide the tetrahedra into blocks of about equal size.
   const BisectionTree<CuttingFrame> tree(CuttingFrame(frame), sample, 1 << levels);
   std::vector<std::uint8_t> blocks(mesh.slots(), 0);
   forEachChunk(mesh.slots(), threads,
@@ -87,7 +88,7 @@ MeshBlock::MeshBlock(const TetrahedronMesh& whole, const OperationRules& rules,
   }
 }
 
-/// The tetrahedra that the own ones meet, once each, and the faces between.
+/// The tetrahedra that touch the block, once each, and the faces between them.
 void MeshBlock::addOutside(
   const TetrahedronMesh& whole, const std::vector<std::uint8_t>& blocks, TetrahedronArrays& arrays)
 {
@@ -130,7 +131,7 @@ void MeshBlock::addOutside(
   }
 }
 
-/// Gives points the numbers of the block: first those of the input, then inserted ones.
+/// Numbers the points of the block: first input points, then inserted ones.
 void MeshBlock::numberPoints(const TetrahedronMesh& whole, TetrahedronArrays& arrays)
 {
   for (const Tetrahedron& t : arrays.tets)
@@ -175,6 +176,7 @@ TetrahedronArrays MeshBlock::extract(
     Tetrahedron tet = whole.tet(t);
     for (std::int32_t& n : tet.neighbors)
     {
+      // Faces to other blocks are cut; addOutside() attaches the tetrahedra behind them.
       const bool inside = n != NoId && blocks[n >> 2] == block;
       n = inside ? 4 * locals[(n >> 2) - this->Own.front()] + (n & 3) : NoId;
     }
@@ -215,7 +217,7 @@ MeshBlockList cutIntoBlocks(
 }
 
 //------------------------------------------------------------------------------
-/// Joins blocks: the ids that what is new gets, and the faces between the blocks.
+/// Joins blocks: assigns ids to new items, and matches the faces between the blocks.
 class BlockJoin
 {
 public:
@@ -246,7 +248,7 @@ public:
     }
   }
 
-  /// Which face the outer side of each face between blocks is now: after all blocks were changed.
+  /// Finds the current outer side of each face between blocks, after all blocks were changed.
   void matchFaces()
   {
     for (std::size_t b = 0; b < this->Blocks.size(); ++b)
@@ -369,7 +371,7 @@ private:
   MeshBlockList& Blocks;
   TetrahedronArrays Arrays;
   std::vector<TetId> FirstTets;     ///< id of the first new tetrahedron of each block
-  std::vector<PointId> FirstPoints; ///< the same of points
+  std::vector<PointId> FirstPoints; ///< the same for points
   std::vector<std::pair<std::int32_t, std::int32_t>> Now; ///< codes of faces between blocks
 };
 

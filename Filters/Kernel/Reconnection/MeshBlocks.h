@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MeshBlocks.h
- * @brief A large mesh cut into blocks that are changed independently, and joined again.
+ * @brief Cuts a large mesh into blocks that are changed independently, and joins them again.
  * Internal: not installed.
  *
- * A block is a mesh of its own: its tetrahedra, and as a wall the tetrahedra that they meet in the
- * rest of the mesh (OutsideRegion). The points of the latter are fixed, so that the faces
- * between blocks stay and the changed blocks fit together:
+ * A block is a separate mesh: its tetrahedra and, as a wall, the adjacent tetrahedra of the rest of
+ * the mesh (OutsideRegion). The points of the latter are fixed, so that the faces between blocks
+ * are preserved and the changed blocks fit together:
  *
  *        block 0   |   block 1            the points on the line | stay; in the next partition,
  *      ------------x------------          cut in other directions, they are inside a block
  *        block 2   |   block 3
  *
- * Partition, blocks and their numbering depend on the mesh alone, not on threads.
+ * Partition, blocks and their numbering only depend on the mesh, not on threads.
  */
 #ifndef tautline_MeshBlocks_h
 #define tautline_MeshBlocks_h
@@ -24,15 +24,16 @@
 namespace tautline
 {
 /**
- * @brief The block of each slot of a mesh: planes cut the mesh in halves, these in halves, and so
- * on, always across their longest extent in a frame.
- * @param frame 0, 1 or 2: the three directions of cuts, oblique to those of the other frames
+ * @brief The block of each slot of a mesh: planes recursively cut the mesh in halves, always
+ * perpendicular to the longest extent in a frame.
+ * @param frame 0, 1 or 2: the three directions of cuts, oblique to the directions of the other
+ *   frames
  * @param levels there are 2^levels blocks
  */
 std::vector<std::uint8_t> partition(
   const TetrahedronMesh& mesh, int frame, int levels, int threads);
 
-/// A block with the operations and the passes for it.
+/// A block with its operations and passes.
 class MeshBlock
 {
 public:
@@ -49,7 +50,7 @@ public:
   TetrahedronPasses& passes() { return this->Passes; }
   /// The points of the whole mesh that the block has.
   const std::vector<PointId>& points() const { return this->Points; }
-  /// For each of these, whether it is on a face between blocks.
+  /// For each of these points, whether it is on a face between blocks.
   const std::vector<char>& shared() const { return this->Shared; }
 
 private:
@@ -68,7 +69,7 @@ private:
   void numberPoints(const TetrahedronMesh& whole, TetrahedronArrays& arrays);
 
   std::vector<TetId> Own;
-  std::vector<TetId> Outside;  ///< of the whole mesh; they follow the own ones
+  std::vector<TetId> Outside;  ///< of the whole mesh; they follow the tetrahedra of the block
   std::vector<PointId> Points; ///< of the whole mesh
   std::vector<char> Shared;
   std::vector<SharedFace> Faces;
@@ -84,9 +85,9 @@ MeshBlockList cutIntoBlocks(
   const TetrahedronMesh& whole, const OperationRules& rules, int frame, int levels, int threads);
 
 /**
- * @brief Puts the changed blocks into the mesh they were cut from. Tetrahedra and points that were
- * not changed keep their ids; what is new follows, in the order of the blocks.
- * @param operations of the whole mesh: gets the counts, and the freedoms of new points
+ * @brief Puts the changed blocks back into the original mesh. Unchanged tetrahedra and points keep
+ * their ids; new ones follow in the order of the blocks.
+ * @param operations of the whole mesh: receives the counts and the freedoms of new points
  */
 void joinBlocks(
   TetrahedronMesh& whole, CavityOperations& operations, MeshBlockList& blocks, int threads);

@@ -11,21 +11,21 @@ namespace tautline
 {
 namespace
 {
-/// A split may lower the smallest quality around to this part of it, or to this quality, whichever
-/// is less: what it leaves is improved later.
+/// A split may reduce the smallest surrounding quality to this fraction, or to this quality,
+/// whichever is less: it is improved later.
 constexpr double SplitShare = 0.3, SplitQuality = 0.02;
-/// The same of contractions.
+/// The same for contractions.
 constexpr double ContractionShare = 0.6, ContractionQuality = 0.2;
-/// Weight of the squared logarithm of the length of an edge against the inverse mean ratio of a
+/// Weight of the squared logarithm of the length of an edge relative to the inverse mean ratio of a
 /// tetrahedron.
 constexpr double LengthWeight = 1.0;
 /// The inverse mean ratio is S / (12 (d / 2)^(2/3)), see metricShape() for S and d.
 constexpr double ShapeFactor = 12.0;
-/// A motion has to decrease the sum by this part of it.
+/// A motion must decrease the sum by this fraction.
 constexpr double LeastRelaxation = 1e-3;
-/// A motion for the sum may lower the smallest quality around to this part of it.
+/// A motion for the sum may reduce the smallest surrounding quality to this fraction.
 constexpr double RelaxationShare = 0.8;
-/// Logarithms of lengths below this are the same as none.
+/// Squared lengths below this are treated as zero.
 constexpr double LeastLength2 = 1e-200;
 
 using Eigen::Matrix3d;
@@ -44,7 +44,7 @@ Vec3 product(const MetricTensor& m, const Vec3& e)
     m[5] * e[0] + m[4] * e[1] + m[2] * e[2] };
 }
 
-/// A sum with its derivatives by the place of a point, the metrics held.
+/// A sum with its derivatives with respect to the position of a point, with fixed metrics.
 struct StarSum
 {
   bool derivatives = true; ///< whether these are needed
@@ -91,15 +91,15 @@ struct StarSum
     {
       return;
     }
-    // Of the logarithm: -(M e) / (e . M e).
+    // The gradient of the logarithm: -(M e) / (e . M e).
     const Vector3d g = (-0.5 / square) * toEigen(me);
     this->gradient += 2.0 * LengthWeight * logarithm * g;
     this->hessian += 2.0 * LengthWeight * g * g.transpose(); // Gauss-Newton
   }
 };
 
-/// Where an edge is halved in the metric, as part of it from a: the length grows geometrically from
-/// that in the metric at a to that in the metric at b.
+/// The fraction of an edge from a at which it is halved in the metric: the length varies
+/// geometrically from the metric at a to the metric at b.
 double middleOf(const Vec3& e, const MetricTensor& a, const MetricTensor& b)
 {
   constexpr double nearlyEqual = 1e-3;
@@ -120,7 +120,7 @@ TetId CavityOperations::cellNear(PointId v) const
 }
 
 //------------------------------------------------------------------------------
-/// What a point on an edge at the walls `Walls` may do. @return whether the edge may be divided
+/// The freedom of a point on an edge at the walls `Walls`. @return whether the edge may be divided
 bool CavityOperations::freedomOfSplit(PointId a, PointId b, PointFreedom& freedom) const
 {
   if (this->Walls.empty())
@@ -136,7 +136,7 @@ bool CavityOperations::freedomOfSplit(PointId a, PointId b, PointFreedom& freedo
   Vec3 normal = { 0, 0, 0 };
   std::int32_t first = NoId;
   PointId thirdOfFirst = NoId;
-  bool flat = true, single = true; // single: the edge is where a wall inside ends
+  bool flat = true, single = true; // single: an interior wall ends at the edge
   for (std::int32_t wall : this->Walls)
   {
     const TriangleVertices f = this->Mesh.face(wall >> 2, wall & 3);
@@ -159,9 +159,9 @@ bool CavityOperations::freedomOfSplit(PointId a, PointId b, PointFreedom& freedo
 }
 
 //------------------------------------------------------------------------------
-/// The place and the freedom of a point on an edge of a curved boundary. Where it is not clear
-/// which curve the edge is of, the point stays on it.
-/// @return false: the edge is not of the outer boundary alone
+/// The position and the freedom of a point on an edge of a curved boundary. If the curve of the
+/// edge is ambiguous, the point stays on the edge.
+/// @return false if the edge does not only belong to the outer boundary
 bool CavityOperations::curvedSplit(PointId a, PointId b, Vec3& x, PointFreedom& freedom) const
 {
   freedom = PointFreedom();
@@ -222,7 +222,7 @@ bool CavityOperations::curvedSplit(PointId a, PointId b, Vec3& x, PointFreedom& 
 }
 
 //------------------------------------------------------------------------------
-/// Divides the edge whose tetrahedra are `Fan` at a place, unless qualities become too bad.
+/// Divides the edge whose tetrahedra are `Fan` at a position, unless qualities become too bad.
 bool CavityOperations::splitAt(PointId a, PointId b, const Vec3& x, const PointFreedom& freedom)
 {
   TetId cell = this->cellNear(a);
@@ -284,13 +284,13 @@ bool CavityOperations::splitEdge(TetId t, int i, int j)
   {
     return true;
   }
-  // On the edge, where the boundary stays as it is.
+  // On the edge, where the boundary is unchanged.
   freedom.fix();
   return this->splitAt(a, b, x, freedom);
 }
 
 //------------------------------------------------------------------------------
-/// Whether vertex i may be moved into vertex j: along walls it is on, if any.
+/// Whether vertex i may be contracted into vertex j: along its walls, if any.
 bool CavityOperations::canContractInMetric(TetId t, int i, int j)
 {
   const PointId v = this->Mesh.tet(t).vertices[i], w = this->Mesh.tet(t).vertices[j];
@@ -315,8 +315,8 @@ bool CavityOperations::canContractInMetric(TetId t, int i, int j)
 }
 
 //------------------------------------------------------------------------------
-/// Sets up the replacement that moves v into w. @return the smallest quality of it, or -1 where a
-/// wall would move, an edge become too long or the qualities too bad
+/// Prepares the replacement that contracts v into w. @return its smallest quality, or -1 if a wall
+/// would move, an edge would become too long, or the qualities too bad
 double CavityOperations::prepareContractionInMetric(PointId v, PointId w)
 {
   constexpr double impossible = -1.0;
@@ -333,7 +333,7 @@ double CavityOperations::prepareContractionInMetric(PointId v, PointId w)
     before = std::min(before, this->Mesh.quality(s));
     if (this->Mesh.region(s) == OutsideRegion || (other != NoId && this->Mesh.isWall(s, other)))
     {
-      return impossible; // the face opposite w would come to be that opposite v
+      return impossible; // the face opposite w would become the face opposite v
     }
     if (other != NoId)
     {
@@ -359,7 +359,7 @@ double CavityOperations::prepareContractionInMetric(PointId v, PointId w)
   {
     return impossible;
   }
-  // Only points that were no neighbors of w get an edge with it.
+  // Only points that were not neighbors of w get an edge with it.
   const double longest2 = this->edgeFactor * this->edgeFactor;
   for (const TetVertices& vertices : this->Change.after)
   {
@@ -384,7 +384,7 @@ bool CavityOperations::contractEdge(TetId t, int i, int j)
     this->canContractInMetric(t, i, j) ? this->prepareContractionInMetric(v, w) : -1.0;
   const double backward =
     this->canContractInMetric(t, j, i) ? this->prepareContractionInMetric(w, v) : -1.0;
-  // The better one first.
+  // Try the better one first.
   for (int attempt = 0; attempt < 2; ++attempt)
   {
     const bool first = (forward >= backward) == (attempt == 0);
@@ -404,7 +404,7 @@ bool CavityOperations::contractEdge(TetId t, int i, int j)
 }
 
 //------------------------------------------------------------------------------
-/// Moves v to p if the smallest quality around is above a bound there, in the metric of the place.
+/// Moves v to p if the smallest surrounding quality exceeds a bound there, in the local metric.
 /// `Star` is the star of v.
 bool CavityOperations::acceptMotion(PointId v, const Vec3& p, double least)
 {
@@ -442,7 +442,7 @@ bool CavityOperations::acceptMotion(PointId v, const Vec3& p, double least)
 //------------------------------------------------------------------------------
 bool CavityOperations::relax(PointId v)
 {
-  // In vain since the last change of the star.
+  // Already tried without success since the last change of the star.
   const bool known = this->RelaxedAt[v] > this->Stamps[v];
   if (this->freedoms[v].kind == PointFreedom::Fixed || known)
   {
@@ -503,7 +503,7 @@ bool CavityOperations::relax(PointId v)
 }
 
 //------------------------------------------------------------------------------
-/// As smooth(): the steps are made in coordinates in which the metric of the point is the identity.
+/// Like smooth(), with steps in coordinates in which the metric of the point is the identity.
 bool CavityOperations::smoothInMetric(PointId v, int steps)
 {
   const Vec3 start = this->Mesh.point(v);
@@ -554,8 +554,8 @@ bool CavityOperations::smoothInMetric(PointId v, int steps)
 }
 
 //------------------------------------------------------------------------------
-/// Whether the two facets at an open ring are of the same class; sets the label of those that a
-/// swap makes.
+/// Whether the two facets at an open ring are of the same class; sets the label of the facets that
+/// a swap creates.
 bool CavityOperations::labelBoundarySwap(const EdgeRing& ring)
 {
   const std::array<std::array<PointId, 2>, 2> ends = { { { ring.tets[0], ring.ring[1] },

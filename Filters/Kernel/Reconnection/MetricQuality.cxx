@@ -27,10 +27,10 @@ MetricQuality::MetricQuality(Metric metric, int exponent, double mean)
   check(info.in3D && info.definedOn(CellType::Tetrahedron), info,
     "is not defined on tetrahedra: choose another metric");
   check(info.direction != Direction::Neutral, info,
-    "is neither better larger nor smaller: choose another metric");
+    "has no direction of improvement: choose another metric");
   check(info.rotationInvariant, info,
-    "depends on the orientation in space, and new tetrahedra have no given one: choose another "
-    "metric");
+    "depends on the orientation in space, which is undefined for new tetrahedra: choose "
+    "another metric");
   requireDerivatives(info);
   const double ideal = info.ideal3D;
   this->Reciprocal = std::isfinite(ideal) && ideal > 0.0;
@@ -60,7 +60,7 @@ double MetricQuality::qualityOf(double value, double& slope) const
   const double x = std::max(value, 0.0), u = this->Unit;
   if (this->Reciprocal)
   {
-    // Smaller values than the ideal one are rounding.
+    // Values below the ideal one are rounding errors.
     slope = larger ? 1.0 / u : (x > 0.0 ? -u / (x * x) : 0.0);
     return larger ? x / u : (x > 0.0 ? u / x : 0.0);
   }

@@ -13,11 +13,11 @@
 namespace tautline
 {
 /**
- * @brief Maps the values x of a metric on tetrahedra to qualities q from 0 to 1, so that the order
- * from worst to best is the metric's: with the ideal value I, q = x / I where larger is better, I /
- * x where smaller is and I is above 0, and 1 / (1 + x) for I = 0. Without an ideal value (it
- * depends on the size), x / (x + u) or u / (x + u) with the mean u of the input. At most 0 for
- * tetrahedra that are degenerate or inverted.
+ * @brief Maps the values x of a metric on tetrahedra to qualities q from 0 to 1, preserving the
+ * order from worst to best: with the ideal value I, q = x / I if larger is better, I / x if smaller
+ * is better and I is above 0, and 1 / (1 + x) for I = 0. Without an ideal value (it depends on the
+ * size), x / (x + u) or u / (x + u) with the mean u of the input. At most 0 for tetrahedra that are
+ * degenerate or inverted.
  *
  * Threads share it.
  */
@@ -26,9 +26,9 @@ class TAUTLINE_RECONNECTIONKERNEL_EXPORT MetricQuality
 public:
   /**
    * @brief Throws Error, with a remedy, for metrics that are not defined on tetrahedra, have no
-   * derivatives, depend on the orientation in space or are neither better larger nor smaller.
-   * @param exponent the metric is of the points times 2^exponent
-   * @param mean of the metric's values in the input
+   * derivatives, depend on the orientation in space, or have no direction of improvement.
+   * @param exponent the metric is evaluated for the points times 2^exponent
+   * @param mean of the metric values in the input
    */
   MetricQuality(Metric metric, int exponent, double mean);
   MetricQuality(const MetricQuality&) = delete;
@@ -40,7 +40,7 @@ public:
    * @brief The qualities of several tetrahedra with the vertex p.
    * @param faces a, b, c in the order that makes (p, a, b, c) positive
    * @param values one per face
-   * @param gradients by p, one per face; null: not needed
+   * @param gradients with respect to p, one per face; null: not needed
    */
   void evaluate(const Vec3& p, const std::array<Vec3, 3>* faces, int count, double* values,
     Vec3* gradients) const;
@@ -52,8 +52,8 @@ private:
 
   const MetricInfo& Info;
   double Scale = 1, Unit = 1; ///< of the points, and of the values
-  bool Reciprocal = false;    ///< q = Unit / x or x / Unit, not one with a sum
-  // What an evaluator takes as its mesh: one tetrahedron.
+  bool Reciprocal = false;    ///< whether q = Unit / x or x / Unit, without a sum
+  // The mesh for an evaluator: one tetrahedron.
   std::array<double, 12> Points = { 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1 };
   std::array<unsigned char, 1> Types;
   std::array<Index, 2> Offsets = { 0, 4 };

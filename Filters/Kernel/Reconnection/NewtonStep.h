@@ -23,7 +23,8 @@ inline Vec3 fromEigen(const Eigen::Vector3d& v)
   return { v[0], v[1], v[2] };
 }
 
-/// Newton's step in the directions that a point has; along the gradient where that is no descent.
+/// Newton's step in the free directions of a point; along the gradient if that is not a descent
+/// direction.
 inline Vec3 newtonStep(Eigen::Vector3d g, Eigen::Matrix3d h, const PointFreedom& freedom)
 {
   using Eigen::Matrix3d;

@@ -12,14 +12,14 @@ namespace
 /// A tetrahedron this close to its bound is at it: the bounds of facets are about as accurate.
 constexpr double NearBound = 2e-3;
 
-/// Where the points of the walls are, and what all walls force.
+/// The points on walls, and the bounds forced by all walls.
 struct Walls
 {
   std::vector<char> atSurface, atInterface; ///< one flag per point
   double meanRatio = 1, quality = 1;
 };
 
-/// Whether face i is a wall, other than those towards what is around a part of a mesh.
+/// Whether face i is a wall, except toward the surroundings of a part of a mesh.
 bool isOwnWall(const TetrahedronMesh& mesh, TetId t, int i)
 {
   const std::int32_t n = mesh.tet(t).neighbors[i];
@@ -55,7 +55,7 @@ Walls findWalls(const TetrahedronMesh& mesh, const TetrahedronPasses& passes)
       {
         continue;
       }
-      // Only a facet on which the tetrahedron is that bad can force more.
+      // Only a facet whose tetrahedron is this bad can force a worse bound.
       if (mesh.quality(t) < walls.quality)
       {
         walls.quality = std::min(walls.quality, facetQuality(a, b, c, mesh.weights(), smoothing));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Obstacles.h
- * @brief Why tetrahedra are still below the target, and what the walls force.
+ * @brief The reasons why tetrahedra are still below the target, and the bounds forced by the walls.
  * Internal: not installed.
  */
 #ifndef tautline_Obstacles_h
@@ -13,7 +13,8 @@
 namespace tautline
 {
 /**
- * @brief Sets the obstacles, qualities and bounds of the result, and what the walls force.
+ * @brief Sets the obstacles, qualities and bounds of the result, including the bounds forced by the
+ * walls.
  * @param fixedPoints one flag per point of the input
  */
 void findObstacles(const TetrahedronMesh& mesh, const TetrahedronPasses& passes,

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// Volumes that tetrahedra of the output share with those of the input.
+// SPDX-License-Identifier: BSD-3-Clause Volumes of the intersections of output and input
+// tetrahedra.
 #include "ReconnectionOutput.h"
 
 #include "Constants.h"
@@ -21,7 +21,7 @@ double volumeOf(const Corners& x)
   return dot(cross(x[1] - x[0], x[2] - x[0]), x[3] - x[0]);
 }
 
-/// Where the plane cuts the edge from a corner inside to one outside.
+/// The intersection of the plane with the edge from an inside corner to an outside one.
 Vec3 cut(const Vec3& inside, double height, const Vec3& outside, double depth)
 {
   return inside + (height / (height - depth)) * (outside - inside);
@@ -37,7 +37,7 @@ double clippedVolume(const Corners& x, const Vec3* normals, const double* positi
   const auto rest = [&](const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
     return clippedVolume({ a, b, c, d }, normals + 1, positions + 1, planes - 1);
   };
-  // Corners inside come first.
+  // Sort the corners, inside ones first.
   std::array<Vec3, 4> v;
   std::array<double, 4> h;
   int inside = 0, outside = 4;
@@ -71,7 +71,7 @@ double clippedVolume(const Corners& x, const Vec3* normals, const double* positi
   }
 }
 
-/// Six times the volume that two tetrahedra share.
+/// Six times the common volume of two tetrahedra.
 double sharedVolume(const Corners& x, const Corners& y)
 {
   Vec3 normals[4];

@@ -11,26 +11,27 @@ namespace
 {
 /// Qualities of the first passes: the worst tetrahedra first, also of the whole mesh.
 constexpr double FirstTargets[] = { 0.3, 0.45, 0.55 };
-/// What a motion of a point has to gain in the passes for the target, and after these. Smaller
-/// gains cost time and, at 50,000 tetrahedra, no longer improve the worst.
+/// The minimum gain of a point motion in the passes for the target, and after these. Smaller gains
+/// cost time and, at 50,000 tetrahedra, no longer improve the worst.
 constexpr double TargetGain = 1e-3, FineGain = 5e-4;
-/// Instead of both up to the last pass, for targets above this quality: half of all tetrahedra are
-/// worked on then.
+/// Replaces both up to the last pass for targets above this quality, where half of all tetrahedra
+/// are processed.
 constexpr double HighTarget = 0.57, HighTargetGain = 4e-3;
-/// Steps of a point, each time, in the last pass; the others have two.
+/// The number of steps of a point in the last pass; the other passes use two.
 constexpr int CompoundSteps = 4;
-/// Swaps and insertions that may follow a tentative change, in the last pass.
+/// The number of swaps and insertions that may follow a tentative change in the last pass.
 constexpr int Repairs = 4;
-/// It ends after so many tetrahedra tried in vain, and one more of so many of the mesh: these take
-/// some milliseconds each.
+/// It ends after this many unsuccessful tetrahedra, plus one per this many tetrahedra of the mesh:
+/// each takes some milliseconds.
 constexpr Index MaxFailures = 100, TetrahedraPerFailure = 10000;
 
-/// Target angles of the stages. Every stage tries everything on the tetrahedra below its angle, so
-/// that what the count allows is spent on the worst first. First slivers, then steps that a user
-/// can tell apart; the default target is one of them.
+/// Target angles of the stages. Every stage tries all operations on the tetrahedra below its angle,
+/// so that the allowed count is used for the worst first. First slivers, then steps that a user can
+/// distinguish; the default target is one of them.
 constexpr double StageAngles[] = { SliverAngle, 25.0, 33.4, 40.0, 45.0, 50.0, 55.0, 60.0 };
 
-/// The passes of a stage. @param target quality; @param former of the stage before, 0: none
+/// The passes of a stage. @param target quality; @param former target of the previous stage, 0:
+/// none
 std::vector<PassOptions> planStage(
   const ReconnectionOptions& options, Index size, double target, double former)
 {
@@ -54,7 +55,7 @@ std::vector<PassOptions> planStage(
   pass.leastGain = high ? HighTargetGain : TargetGain;
   passes.push_back(pass);
   const bool keepsCount = options.smallestCount == 1.0 && options.largestCount == 1.0;
-  // For sums insertions gain little: on 50,000 tetrahedra half a percent, for nine times the time.
+  // For sums, insertions gain little: on 50,000 tetrahedra half a percent, at nine times the cost.
   if (options.insert && !keepsCount && !sums)
   {
     pass.insert = true;

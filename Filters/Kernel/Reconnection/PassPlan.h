@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PassPlan.h
- * @brief Which passes a run of reconnection consists of.
- * Internal: not installed.
+ * @brief The passes of a reconnection run. Internal: not installed.
  */
 #ifndef tautline_PassPlan_h
 #define tautline_PassPlan_h
@@ -20,10 +19,11 @@ namespace tautline
  */
 std::vector<std::vector<PassOptions>> planStages(const ReconnectionOptions& options, Index size);
 
-/// For what repairs that were ended early left below the target.
+/// A pass for tetrahedra left below the target by prematurely ended repairs.
 PassOptions withoutCompound(PassOptions pass);
 
-/// Those that what blocks left needs: the compound ones, and the one before these that does most.
+/// The passes for tetrahedra left by blocks: the compound ones, and the most effective one before
+/// these.
 std::vector<PassOptions> lastPasses(const std::vector<PassOptions>& passes);
 }
 #endif

@@ -8,13 +8,13 @@ namespace
 {
 /// Not computed; less than any quality.
 constexpr double Unknown = -2.0;
-/// In place of the quality of a face that the point lies in; more than any quality.
+/// Used instead of the quality of a face that contains the point; more than any quality.
 constexpr double Opened = 2.0;
-/// Height of a point over a plane, relative to the facet, that is rounding.
+/// Heights of a point over a plane below this, relative to the facet, are rounding errors.
 constexpr double RoundingHeight = 1e-12;
-/// Cavities grow to at most so many tetrahedra.
+/// Cavities grow to at most this many tetrahedra.
 constexpr std::size_t MaxCavity = 48;
-/// Steps of the new point after each growth of the cavity, and how often it grows again.
+/// The number of steps of the new point after each growth of the cavity, and of growth rounds.
 constexpr int PointSteps = 3, Rounds = 2;
 }
 
@@ -62,8 +62,8 @@ bool CavityOperations::isOpened(const CavityFace& face, const Insertion& inserti
     std::max(this->flatTolerance, RoundingHeight) * area * std::sqrt(area);
 }
 
-/// Starting from the tetrahedra of the insertion: adds the one behind the worst face, again and
-/// again, and keeps the cavity with the best worst face. Then optimizes the point.
+/// Starting from the tetrahedra of the insertion: repeatedly adds the one behind the worst face,
+/// and keeps the cavity with the best worst face. Then optimizes the point.
 void CavityOperations::grow(Insertion& insertion)
 {
   const Vec3& p = insertion.point;
@@ -124,7 +124,7 @@ bool CavityOperations::startInsertion(
     {
       break;
     }
-    // The faces of the cavity that was kept, for the best point.
+    // Compute the faces of the kept cavity for the best point.
     this->Cavity.clear();
     this->CavityFaces.clear();
     for (TetId t : trial.tets)
@@ -156,7 +156,7 @@ bool CavityOperations::startInsertion(
   return better;
 }
 
-/// What a point on the edge of an open ring may do: move in the plane of both walls, or along the
+/// The freedom of a point on the edge of an open ring: in the plane of both walls, or along the
 /// edge.
 PointFreedom CavityOperations::freedomOnEdge(const EdgeRing& ring) const
 {
@@ -253,7 +253,7 @@ bool CavityOperations::applyInsertion(const Insertion& best)
   {
     this->addToCavity(s);
   }
-  // A point that an earlier step of this change has freed is used again: undoing has to restore it.
+  // A point freed by an earlier step of this change is reused: undoing must restore it.
   const PointId p = this->Mesh.nextPoint();
   Step former;
   former.point = p;
@@ -283,7 +283,7 @@ bool CavityOperations::applyInsertion(const Insertion& best)
     this->Change.add(vertices, this->Mesh.computeQuality(vertices));
     kept.insert(kept.end(), u.begin(), u.end());
   }
-  // Points inside the cavity vanish: only those that are free may.
+  // Points inside the cavity vanish: only free points may.
   std::sort(kept.begin(), kept.end());
   kept.erase(std::unique(kept.begin(), kept.end()), kept.end());
   std::vector<PointId> around = kept;

@@ -25,22 +25,24 @@ namespace
 {
 /// The same on the whole mesh after its blocks.
 constexpr Index WholeFailures = 50;
-/// The last pass is repeated, at most so often, as long as the worst quality gains so much by it.
+/// The last pass is repeated, at most this many times, as long as the worst quality gains this
+/// much.
 constexpr int Repetitions = 3;
 constexpr double RepetitionGain = 2e-3;
 /// The largest number of times that blocks are halved, and of partitions in different directions.
 constexpr int MaxLevels = 8, Partitions = 3;
-/// How far beyond the faces between blocks the next partition starts, in rings of tetrahedra.
+/// The number of rings of tetrahedra beyond the faces between blocks at which the next partition
+/// starts.
 constexpr int StartRings = 1;
-/// Blocks pay where at least this part of the tetrahedra is worked on.
+/// Blocks pay off if at least this fraction of the tetrahedra is processed.
 constexpr double BlockFraction = 0.1;
 /// Progress when all blocks are done.
 constexpr double BlockProgress = 0.9;
 
-/// With ReconnectionOptions::adapt, how long a contraction may make edges: somewhat longer
-/// than what is split again, or many short edges could not be contracted.
+/// With ReconnectionOptions::adapt, the largest length of edges after a contraction: somewhat
+/// longer than edges that are split again, or many short edges could not be contracted.
 constexpr double AdaptedFactor = 1.6;
-/// So much one of the sine and the mean ratio counts where the other is the objective.
+/// The weight that disables one of the sine and the mean ratio if the other is the objective.
 constexpr double IgnoredWeight = 1e3;
 
 QualityWeights weightsOf(const ReconnectionOptions& options, const MetricQuality* metric)
@@ -58,7 +60,7 @@ QualityWeights weightsOf(const ReconnectionOptions& options, const MetricQuality
     objective == ReconnectionObjective::Angles ? IgnoredWeight : 1.0 };
 }
 
-/// The metric that is the objective; null: another one is.
+/// The metric objective; null for other objectives.
 std::unique_ptr<MetricQuality> metricOf(
   const Mesh& mesh, const ReconnectionInput& input, const ReconnectionOptions& options)
 {
@@ -80,7 +82,7 @@ std::unique_ptr<MetricQuality> metricOf(
   return std::make_unique<MetricQuality>(options.metric, input.exponent, sum);
 }
 
-/// The class of each label; that of none is 0.
+/// The class of each label; the class of no label is 0.
 std::vector<std::int32_t> classesOf(const ReconnectionOptions& options)
 {
   std::vector<std::int32_t> classes(options.markedFacets.size() + 1, 1);
@@ -92,8 +94,8 @@ std::vector<std::int32_t> classesOf(const ReconnectionOptions& options)
   return classes;
 }
 
-/// Adds the worst values of some tetrahedra to the record; only those that may be worse than those
-/// before are measured.
+/// Adds the worst values of some tetrahedra to the record; only tetrahedra that may be worse than
+/// the previous ones are measured.
 void addWorst(
   const TetrahedronMesh& mesh, TetId begin, TetId end, double target, ReconnectionRecord& record)
 {
@@ -120,9 +122,8 @@ void addWorst(
       record.largestAngle = std::max(record.largestAngle, angle);
     }
     meanRatio = std::min(meanRatio, measure(x(0), x(1), x(2), x(3)).meanRatio);
-    // With weights 1, all angles are between asin(q) and 180 degrees minus it, and the mean ratio's
-    // power is above q.
-    // (Of a metric of the registry nothing follows for these: the weights are large.)
+    // With weights 1, all angles are between asin(q) and 180 degrees minus it, and the power of the
+    // mean ratio is above q. (A registry metric gives no such bounds: the weights are large.)
     const QualityWeights& w = mesh.weights();
     if (w.inMetric)
     {
@@ -181,7 +182,7 @@ double sumOf(const TetrahedronMesh& mesh, int threads, const Function& function)
   return std::accumulate(ofChunk.begin(), ofChunk.end(), 0.0);
 }
 
-/// In the units of the input, which are 2^exponent.
+/// The volume in units of the input, which are 2^exponent.
 double volumeOf(const TetrahedronMesh& mesh, int exponent, int threads)
 {
   const double sum = sumOf(mesh, threads,
@@ -190,7 +191,7 @@ double volumeOf(const TetrahedronMesh& mesh, int exponent, int threads)
   return std::ldexp(sum / 6.0, 3 * exponent);
 }
 
-/// Of the inverse mean ratio.
+/// The mean of the inverse mean ratio.
 double meanRatioOf(const TetrahedronMesh& mesh, int threads)
 {
   const double sum = sumOf(mesh, threads,
@@ -212,7 +213,7 @@ void copyCounts(const OperationCounts& counts, ReconnectionRecord& record)
   record.moves = counts.moves;
 }
 
-/// How often a mesh is halved until the next half would be smaller than a block.
+/// The number of times a mesh is halved before the next half would be smaller than a block.
 int levelsOf(Index size, Index blockSize)
 {
   int levels = 0;
@@ -345,7 +346,8 @@ void Run::run(const std::vector<PointFreedom>& freedoms,
   }
 }
 
-/// Gives the edges their lengths, and improves the worst in the metric; false if stopped.
+/// Adapts the edges to their target lengths, and improves the worst elements in the metric; false
+/// if stopped.
 bool Run::adapt()
 {
   TetrahedronAdaptation adaptation(this->Mesh, this->Operations, this->Passes);
@@ -359,8 +361,8 @@ bool Run::adapt()
   return adaptation.run();
 }
 
-/// Runs the stages until the target is reached; false if stopped. They do not depend on it but for
-/// their number: what a higher target does begins with what a lower one does.
+/// Runs the stages until the target is reached; false if stopped. Except for their number, they do
+/// not depend on the target: a run for a higher target begins like a run for a lower one.
 bool Run::runStages()
 {
   const std::vector<std::vector<PassOptions>> stages = planStages(this->Options, this->Mesh.size());
@@ -412,12 +414,13 @@ bool Run::runPasses(std::vector<PassOptions> passes, double end)
     }
     if (!this->Operations.sums)
     {
-      // What the mesh has reached is kept: a run that ends later is not worse in any of the worst.
+      // The state of the mesh is the new floor: a later end of the run is not worse in any of the
+      // worst values.
       this->setFloor(before);
     }
     if (passes[i].repairs > 0 && !this->Passes.starts.empty())
     {
-      // Again the worst of the whole mesh, after the blocks had their share of failures.
+      // Process the worst of the whole mesh again, after the blocks had their share of failures.
       this->Passes.starts.clear();
       passes[i].maxFailures = WholeFailures;
     }
@@ -438,7 +441,7 @@ bool Run::runPasses(std::vector<PassOptions> passes, double end)
   return !stopped;
 }
 
-/// Moves all points in turn for the mean, the worst being held; false if stopped.
+/// Moves all points in turn to improve the mean without worsening the worst; false if stopped.
 bool Run::improveMean()
 {
   const ReconnectionRecord before = this->Result.history.back();
@@ -448,7 +451,7 @@ bool Run::improveMean()
   return this->record(before.pass + 1, 1.0) && complete;
 }
 
-/// Flags also the points of the tetrahedra around.
+/// Also flags the points of the surrounding tetrahedra.
 std::vector<char> Run::addRings(std::vector<char> flags) const
 {
   flags.resize(this->Mesh.pointSlots(), 0);
@@ -509,7 +512,7 @@ bool Run::runBlocks(
       [[maybe_unused]] const bool complete = std::all_of(passes.begin(), passes.end(),
         [&](PassOptions pass)
         {
-          // Of the failures that a pass may have, the block has its share.
+          // The block has a share of the failures allowed in a pass.
           const Index share = (pass.maxFailures * block.mesh().size()) / this->Mesh.size();
           pass.maxFailures = pass.maxFailures > 0 ? std::max<Index>(share, 1) : 0;
           bool goesOn = !stop && own.run(pass) >= 0;
@@ -534,7 +537,7 @@ bool Run::runBlocks(
   return !stop;
 }
 
-/// Whether enough tetrahedra are below the target, of those that passes start with.
+/// Whether enough of the start tetrahedra of the passes are below the target.
 bool Run::paysInBlocks(const std::vector<char>& starts, double target) const
 {
   if (this->Operations.sums)
@@ -553,8 +556,9 @@ bool Run::paysInBlocks(const std::vector<char>& starts, double target) const
   return static_cast<double>(count) >= BlockFraction * static_cast<double>(this->Mesh.size());
 }
 
-/// Runs the passes in blocks of several partitions; false if stopped. Where a partition has its
-/// faces between blocks, the next one goes on; what then is left, the passes of the whole have.
+/// Runs the passes in blocks of several partitions; false if stopped. The next partition continues
+/// where the previous one has its faces between blocks; the remaining tetrahedra are left to the
+/// passes on the whole mesh.
 /// @param starts one flag per point, or empty: all
 bool Run::runInBlocks(
   const std::vector<PassOptions>& passes, int levels, std::vector<char> starts, double end)
@@ -597,7 +601,7 @@ Index labelMarked(const ReconnectionOptions& options, TetrahedronMesh& changing)
     if (std::any_of(f.begin(), f.end(),
           [&](Index v) { return v < 0 || v >= static_cast<Index>(changing.pointSlots()); }))
     {
-      throw Error("a marked facet has a point that the mesh does not have");
+      throw Error("a marked facet has a point that is not in the mesh");
     }
     faces.push_back(
       { static_cast<PointId>(f[0]), static_cast<PointId>(f[1]), static_cast<PointId>(f[2]) });
@@ -605,7 +609,7 @@ Index labelMarked(const ReconnectionOptions& options, TetrahedronMesh& changing)
   return changing.labelFaces(faces, options.adapt);
 }
 
-/// Throws Error for target lengths that ask for more tetrahedra than there is memory for.
+/// Throws Error for target lengths that require more tetrahedra than fit into memory.
 void requireFeasible(const TetrahedronMesh& mesh)
 {
   constexpr double idealVolume = 0.11785113019775792; // of edges of length 1: sqrt(2) / 12
@@ -624,7 +628,7 @@ void requireFeasible(const TetrahedronMesh& mesh)
   requireRoom(expected / idealVolume, "tetrahedra", bytesPerTetrahedron);
 }
 
-/// How many of the marked facets are no label of a face.
+/// The number of marked facets that do not label a face.
 Index countIgnored(const ReconnectionOptions& options, const TetrahedronMesh& mesh)
 {
   std::vector<char> used(options.markedFacets.size() + 1, 0);
@@ -639,7 +643,7 @@ Index countIgnored(const ReconnectionOptions& options, const TetrahedronMesh& me
   return std::count(used.begin(), used.end(), 0);
 }
 
-/// Per point whether it is on a labeled facet inside the mesh.
+/// Per point: whether it is on a labeled facet inside the mesh.
 std::vector<char> pointsOfMarked(const TetrahedronMesh& mesh)
 {
   std::vector<char> points(mesh.pointSlots(), 0);
@@ -657,8 +661,8 @@ std::vector<char> pointsOfMarked(const TetrahedronMesh& mesh)
   return points;
 }
 
-/// Fixes the points of marked facets, those around a part, and those of the options. @return one
-/// flag per point for the latter
+/// Fixes the points of marked facets, points around a part, and the fixed points of the options.
+/// @return one flag per point for the latter
 std::vector<char> fixPoints(const TetrahedronMesh& mesh, const ReconnectionOptions& options,
   const std::vector<char>& marked, std::vector<PointFreedom>& freedoms)
 {
@@ -735,7 +739,7 @@ ReconnectionResult improveConnectivity(const Mesh& mesh, const ReconnectionOptio
       freedoms);
     if (options.boundary == BoundaryMotion::FlatParts)
     {
-      marked.assign(marked.size(), 0); // their points move as those of the boundary do
+      marked.assign(marked.size(), 0); // their points move like boundary points
     }
   }
   const std::vector<char> fixedPoints = fixPoints(changing, options, marked, freedoms);

@@ -12,9 +12,9 @@ namespace tautline
 {
 namespace
 {
-/// Of mesh, workspace and result.
+/// The memory for mesh, workspace and result.
 constexpr double BytesPerTetrahedron = 250.0;
-/// Of the blocks beside these.
+/// The additional memory for blocks.
 constexpr double BlockBytesPerTetrahedron = 110.0;
 constexpr double LargestTargetAngle = 60.0, LargestFlatAngle = 1.0;
 constexpr double LargestFeatureAngle = 180.0, LargestSurfaceAngle = 90.0;
@@ -30,13 +30,13 @@ void requireTetrahedra(const Mesh& mesh)
   if (mesh.higherOrderCells() > 0)
   {
     throw Error(std::to_string(mesh.higherOrderCells()) +
-      " cells of higher order: reconnection takes linear tetrahedra. Run Curve Mesh with order 1 "
-      "first, and with the order of these cells on the result");
+      " cells of higher order: reconnection requires linear tetrahedra. Run Curve Mesh with "
+      "order 1 first, and with the original order on the result");
   }
   if (others > 0)
   {
     throw Error(std::to_string(others) +
-      " cells are not tetrahedra: reconnection takes tetrahedra only; extract these, or run "
+      " cells are not tetrahedra: reconnection requires tetrahedra; extract them, or run "
       "Tetrahedralize first");
   }
   if (mesh.nonFinitePoints() > 0)
@@ -48,7 +48,7 @@ void requireTetrahedra(const Mesh& mesh)
   if (view.numberOfCells > std::numeric_limits<std::int32_t>::max() / 8 ||
     view.numberOfPoints > std::numeric_limits<std::int32_t>::max() / 2)
   {
-    throw Error("reconnection takes at most 268 million tetrahedra: cut the mesh into parts");
+    throw Error("reconnection supports at most 268 million tetrahedra: split the mesh into parts");
   }
 }
 
@@ -89,7 +89,7 @@ void checkReconnectionOptions(const ReconnectionOptions& options)
   check(options.targetAngle > 0.0 && options.targetAngle <= LargestTargetAngle,
     "the target angle must be above 0 and at most 60 degrees");
   check(options.boundary != BoundaryMotion::Free,
-    "the boundary cannot move freely: it must stay, or slide on flat or smooth parts");
+    "the boundary cannot move freely: it must be fixed, or slide on flat or smooth parts");
   check(options.flatAngle >= 0.0 && options.flatAngle <= LargestFlatAngle,
     "the flat angle must be from 0 to 1 degree");
   check(options.featureAngle >= 0.0 && options.featureAngle <= LargestFeatureAngle,
@@ -99,15 +99,15 @@ void checkReconnectionOptions(const ReconnectionOptions& options)
   check(options.surfaceTolerance >= 0.0 && options.surfaceTolerance <= 1.0,
     "the surface tolerance must be 0 to 1 times the diagonal of the mesh");
   check(options.smallestCount >= 0.0 && options.smallestCount <= 1.0,
-    "the smallest count must be from 0 to 1 times that of the input");
+    "the smallest count must be from 0 to 1 times the input count");
   check(options.largestCount >= 1.0 && std::isfinite(options.largestCount),
-    "the largest count must be finite and at least that of the input");
+    "the largest count must be finite and at least 1 times the input count");
   check(options.size != ReconnectionSize::Length ||
       (options.edgeLength > 0.0 && std::isfinite(options.edgeLength)),
     "the target length of edges must be above 0");
   check(!options.adapt || options.size != ReconnectionSize::None,
-    "an adaptation needs target lengths of edges: give a length, or an array of lengths or metric "
-    "tensors");
+    "an adaptation needs target lengths of edges: specify a length, or an array of lengths or "
+    "metric tensors");
   check(options.edgeFactor > 1.0, "the factor of the lengths of edges must be above 1");
   check(options.blockSize >= 1, "the size of blocks must be at least 1");
   check(!(options.maximumSeconds < 0.0), "the time limit must not be negative");
@@ -120,7 +120,7 @@ ReconnectionInput convertInput(const Mesh& mesh, const ReconnectionOptions& opti
   const bool inBlocks = view.numberOfCells >= 2 * options.blockSize;
   requireMemory((BytesPerTetrahedron + (inBlocks ? BlockBytesPerTetrahedron : 0.0)) *
       static_cast<double>(view.numberOfCells),
-    "reconnection of this mesh", "take a smaller mesh");
+    "reconnection of this mesh", "use a smaller mesh");
   std::vector<signed char> validity(view.numberOfCells);
   mesh.classifyCells(validity.data(), options.threads);
   // Flat tetrahedra with four distinct corners are the worst ones, which are improved first.

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ReconnectionInput.h
- * @brief Checks the input of reconnection, and converts it.
- * Internal: not installed.
+ * @brief Checks and converts the input of reconnection. Internal: not installed.
  */
 #ifndef tautline_ReconnectionInput_h
 #define tautline_ReconnectionInput_h
@@ -18,12 +17,12 @@ namespace tautline
 struct ReconnectionInput
 {
   std::vector<Vec3> points;
-  std::vector<TetVertices> cells;    ///< positive, also those of a mirrored mesh
+  std::vector<TetVertices> cells;    ///< positive, even for a mirrored mesh
   std::vector<std::int32_t> regions; ///< renumbered from 0, or OutsideRegion; empty: one region
-  int exponent = 0;                  ///< point = input's times 2^-exponent
+  int exponent = 0;                  ///< point = input point times 2^-exponent
 };
 
-/// The regions' numbers, from 0 in increasing order; empty for null.
+/// Renumbers the regions from 0 in increasing order; empty for null.
 std::vector<std::int32_t> renumberRegions(const Index* regions, Index count);
 
 /// The quality below which tetrahedra are below the target.
@@ -32,7 +31,7 @@ double targetQuality(const ReconnectionOptions& options);
 /// Throws Error for options out of range.
 void checkReconnectionOptions(const ReconnectionOptions& options);
 
-/// Converts. Throws Error for cells and points that reconnection cannot take.
+/// Converts the input. Throws Error for cells and points that reconnection does not support.
 ReconnectionInput convertInput(const Mesh& mesh, const ReconnectionOptions& options);
 
 /// Throws Error for faces of three tetrahedra, or of two on the same side.

@@ -11,10 +11,11 @@ namespace tautline
 {
 namespace
 {
-/// Cells visited on the straight way to a point and in the search around, and the negative weight
-/// that is rounding.
+/// The maximum number of cells visited on the straight path to a point and in the search around its
+/// end, and the negative weight within rounding.
 constexpr std::size_t MaxWalked = 400, MaxSearched = 20000;
-/// Cells visited around the end of the way, where any cell near the point will do.
+/// The maximum number of cells visited around the end of the path if any cell near the point
+/// suffices.
 constexpr std::size_t MaxNear = 60;
 constexpr double WeightTolerance = -1e-12;
 }
@@ -56,7 +57,7 @@ std::array<double, 4> InputLocator::weights(const Vec3& x, TetId cell) const
   return w;
 }
 
-/// Straight on, over the face that x is farthest beyond, as long as there is a neighbour.
+/// Walks straight across the face that x is farthest beyond, as long as there is a neighbor.
 /// @param crosses whether walls between regions are crossed
 /// @param found set to whether the cell contains x
 TetId InputLocator::walk(const Vec3& x, TetId start, bool crosses, bool& found) const
@@ -92,7 +93,7 @@ TetId InputLocator::nearest(const Vec3& x, TetId start) const
   return found ? t : this->search(x, t, true, MaxNear);
 }
 
-/// Looks at the cells around in turn, at most so many.
+/// Searches the surrounding cells in turn, up to a maximum number.
 TetId InputLocator::search(const Vec3& x, TetId start, bool crosses, std::size_t most) const
 {
   std::vector<TetId> queue = { start };
@@ -176,7 +177,7 @@ bool isUnchanged(const ReconnectionInput& input, const TetrahedronMesh& changed,
 
 namespace
 {
-/// Per slot the cell of the input that the centroid is in.
+/// Per slot: the input cell that contains the centroid.
 std::vector<TetId> findOriginals(const ReconnectionInput& input, const TetrahedronMesh& changed,
   const InputLocator& locator, int threads)
 {
@@ -256,7 +257,7 @@ void convertFacets(const ReconnectionInput& input, const ReconnectionOptions& op
   {
     return;
   }
-  // The corners of the cells of the output are those of the tetrahedra, in their order.
+  // The output cells have the corners of the tetrahedra, in their order.
   std::vector<Index> numbers(changed.pointSlots(), -1);
   auto corner = result.tetrahedra.begin();
   for (TetId t = 0; t < changed.slots(); ++t)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ReconnectionOutput.h
- * @brief The result of reconnection as arrays, and how it follows from the input.
- * Internal: not installed.
+ * @brief The result of reconnection as arrays, and its relation to the input. Internal: not
+ * installed.
  */
 #ifndef tautline_ReconnectionOutput_h
 #define tautline_ReconnectionOutput_h
@@ -13,7 +13,7 @@
 
 namespace tautline
 {
-/// The cells of the input that a cell overlaps, and how much they share.
+/// The input cells that a cell overlaps, with the common volumes.
 using OverlapRow = std::vector<std::pair<std::int32_t, double>>;
 
 /// Finds the tetrahedron of the input that contains a point, by walking from a nearby one.
@@ -23,15 +23,15 @@ public:
   /// @param mesh the input, before any change
   InputLocator(const TetrahedronMesh& mesh, const ReconnectionInput& input);
 
-  /// The cell of the same region as `start` that contains x; where none does (by rounding, outside
-  /// the mesh), the nearest of those that were visited.
+  /// The cell of the same region as `start` that contains x; if none does (because of rounding, or
+  /// outside the mesh), the nearest of the visited cells.
   TetId locate(const Vec3& x, TetId start) const;
-  /// The cell that contains x, of any region; where the way to it leaves the mesh, the nearest of
-  /// those that were visited.
+  /// The cell that contains x, of any region; if the path to it leaves the mesh, the nearest of the
+  /// visited cells.
   TetId nearest(const Vec3& x, TetId start) const;
   /**
-   * @brief The cells that a tetrahedron overlaps, and the volumes that they share, times 6. Empty
-   * if there are none.
+   * @brief The cells that a tetrahedron overlaps, and their common volumes, times 6. Empty if there
+   * are none.
    * @param start a cell of its region, near it
    */
   OverlapRow overlaps(const std::array<Vec3, 4>& corners, TetId start) const;
@@ -47,14 +47,14 @@ private:
   std::vector<std::array<std::int32_t, 4>> Neighbors;
 };
 
-/// Whether a tetrahedron is one of the input, its points where they were.
+/// Whether a tetrahedron is an input tetrahedron with unmoved points.
 bool isUnchanged(const ReconnectionInput& input, const TetrahedronMesh& changed, TetId t);
 
-/// Sets ReconnectionResult::overlaps, and the original cells to those that overlap most, from a row
-/// per cell of the output; an empty one is for its original cell.
+/// Sets ReconnectionResult::overlaps, and the original cells to those with the largest overlap,
+/// from one row per output cell; an empty row stands for its original cell.
 void takeOverlaps(std::vector<OverlapRow>& rows, ReconnectionResult& result);
 
-/// Sets ReconnectionResult::overlaps, and the original cells to those that overlap most.
+/// Sets ReconnectionResult::overlaps, and the original cells to those with the largest overlap.
 void computeOverlaps(const ReconnectionInput& input, const TetrahedronMesh& changed,
   const InputLocator& locator, int threads, ReconnectionResult& result);
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ReconnectionProgress.h
- * @brief What runs on tetrahedra and on triangles have in common: the clock, the observer and the
- * history; the queue of the worst cells; the sweeps for the mean.
- * Internal: not installed.
+ * @brief The common part of runs on tetrahedra and triangles: the clock, the observer and the
+ * history; the queue of the worst cells; the sweeps for the mean. Internal: not installed.
  */
 #ifndef tautline_ReconnectionProgress_h
 #define tautline_ReconnectionProgress_h
@@ -19,11 +18,11 @@
 
 namespace tautline
 {
-/// The clock, the observer and the history of a run; starts when it is made.
+/// The clock, the observer and the history of a run; starts at construction.
 class ReconnectionProgress
 {
 public:
-  /// Both have to live as long as this.
+  /// Both must outlive this object.
   ReconnectionProgress(const ReconnectionOptions& options, ReconnectionResult& result)
     : Options(options)
     , Result(result)
@@ -33,11 +32,12 @@ public:
   /**
    * @brief Adds a line to the history.
    * @param record without number and seconds
-   * @param fraction of the run that is done
-   * @return false if the observer stops the run; unless proceed() has ended it, that is the reason
+   * @param fraction fraction of the run done
+   * @return false if the observer stops the run; this becomes the reason unless proceed() has ended
+   * the run
    */
   bool record(ReconnectionRecord record, int pass, double fraction);
-  /// Called now and then within a pass; false if the run ends, for which the result has the reason.
+  /// Called periodically within a pass; false if the run ends; the result has the reason.
   bool proceed();
 
   /// Whether the time limit is reached.
@@ -47,7 +47,7 @@ public:
 
   /**
    * @brief Moves all points in turn for the mean, until a sweep hardly decreases the sum.
-   * @param points how many
+   * @param points their number
    * @param cells the number of cells
    * @param move improves the mean by moving a point; returns the decrease of the sum
    * @return false if stopped
@@ -79,7 +79,7 @@ private:
   double LastCall = 0, Fraction = 0;
 };
 
-/// Cells by their quality: the worst, of equal ones that with the smallest id, comes first.
+/// Cells ordered by quality: the worst comes first, ties by the smallest id.
 template <class Cell>
 class QualityQueue
 {

@@ -14,29 +14,29 @@ namespace tautline
 namespace
 {
 constexpr int CornersOfCell = 4;
-/// Cells with a point at a seam, and so many rings around these, are near it; about the same in
-/// lengths of their edges.
+/// Cells with a point at a seam, and this many rings around them, are near it; about the same in
+/// edge lengths.
 constexpr int Reach = 2;
 constexpr double NearSeam = 2.0;
-/// In so many rounds at first, when there is much beside the seams that later rounds do better, the
-/// number of cells may grow by this part of what it may still grow by.
+/// In this many initial rounds, when later rounds will treat the regions near the seams better, the
+/// number of cells may only use this fraction of the remaining growth.
 constexpr int FirstRounds = 3;
 constexpr double FirstShare = 0.25;
-/// An operation adds so many cells as a rule, or fewer.
+/// An operation usually adds at most this many cells.
 constexpr double LargestGrowth = 4.0;
-/// So many places of a rank decide where planes are not to be.
+/// The number of positions per rank that determine where planes must not be.
 constexpr std::size_t MostPlaces = 2000;
 
-/// The least of the values of all ranks.
+/// The minimum over all ranks.
 double minimum(RankGroup& group, double value)
 {
   return -group.maximum(-value);
 }
 
-/// A part in the form that improveConnectivity() takes: its own cells first.
+/// A part in the form for improveConnectivity(): owned cells first.
 struct LocalMesh
 {
-  std::vector<PartPoint> points; ///< of the part and around it
+  std::vector<PartPoint> points; ///< of the part and its surroundings
   std::vector<double> coordinates;
   std::vector<unsigned char> types, fixed, outside, starts, onSeam, nearSeam;
   std::vector<Index> offsets = { 0 }, connectivity, regions;
@@ -88,10 +88,10 @@ private:
   const ReconnectionOptions& Options;
   bool Mirrored;
   int Frame = -1;     ///< of the planes of the last round
-  double Target;      ///< quality that cells are improved to
-  double Share = 1;   ///< of this rank in what the number of cells may change by
-  double Spent = 1;   ///< part of what it may grow by that is for this round
-  double Largest = 0; ///< number of cells of this rank, at most
+  double Target;      ///< the target quality of cells
+  double Share = 1;   ///< share of this rank in the allowed change of the number of cells
+  double Spent = 1;   ///< fraction of the allowed growth for this round
+  double Largest = 0; ///< maximum number of cells of this rank
   TetrahedronPiece Part;
   std::vector<std::array<Index, 3>> Marked; ///< of the whole mesh, sorted
   Index FirstInserted = 0, NextPoint = 0, FirstSize = 0;
@@ -100,7 +100,7 @@ private:
 };
 
 //------------------------------------------------------------------------------
-/// Takes the cells of this rank, and the marks of all.
+/// Reads the cells of this rank, and the marks of all ranks.
 void RankRounds::take(const RankTetrahedra& mesh)
 {
   Index largest = -1;
@@ -171,7 +171,7 @@ LocalMesh RankRounds::localMesh(const PartSurroundings& around, int round) const
         std::any_of(v.begin(), v.end(), [&](Index p) { return points[p].onAllSeams != 0; });
       for (const Index p : v)
       {
-        local.starts[p] |= onAllSeams; // a ring around what was on a seam
+        local.starts[p] |= onAllSeams; // a ring around the former seam
         isAround[p] |= !own;
       }
       local.connectivity.insert(local.connectivity.end(), v.begin(), v.end());
@@ -181,7 +181,7 @@ LocalMesh RankRounds::localMesh(const PartSurroundings& around, int round) const
       local.outside.push_back(!own);
     }
   }
-  // Where only a point or an edge is common with other ranks, nothing is around.
+  // If only a point or an edge is shared with other ranks, there are no surrounding cells.
   for (const Index number : around.shared)
   {
     const Index p = placeOf(points, number);
@@ -204,8 +204,8 @@ LocalMesh RankRounds::localMesh(const PartSurroundings& around, int round) const
 }
 
 //------------------------------------------------------------------------------
-/// Ranks share as they have cells that are left; at first, when these are not known, as they have
-/// cells. Collective.
+/// Shares are proportional to the remaining cells of each rank; in the first round, when these are
+/// unknown, to all cells. Collective.
 void RankRounds::shareOut(int round, int rounds)
 {
   const std::vector<PartCell>& cells = this->Part.cells;
@@ -221,7 +221,7 @@ void RankRounds::shareOut(int round, int rounds)
 }
 
 //------------------------------------------------------------------------------
-/// Shares what the number of cells may still grow and shrink by among the ranks.
+/// Distributes the remaining allowed growth and decrease of the number of cells among the ranks.
 void RankRounds::setBounds(const LocalMesh& local, ReconnectionOptions& options)
 {
   this->Largest = std::numeric_limits<double>::infinity();
@@ -243,7 +243,8 @@ void RankRounds::setBounds(const LocalMesh& local, ReconnectionOptions& options)
   options.smallestCount = (all - least) / std::max(all, 1.0);
   if (options.largestCount == 1.0 && options.smallestCount == 1.0)
   {
-    // Both 1 would mean any number by swaps; rounded up, the number of cells is the same.
+    // If both were 1, swaps could change the number freely; rounded up, the number of cells is the
+    // same.
     options.smallestCount = std::nextafter(1.0, 0.0);
   }
 }
@@ -256,8 +257,8 @@ void RankRounds::setOptions(
   options.regions = local.regions.data();
   options.outside = local.outside.data();
   options.starts = round == 0 ? nullptr : local.starts.data();
-  // At seams, what changes the number of points is left to rounds whose seams are elsewhere: with
-  // facets that stay, it would take many insertions, and the number of cells is bounded.
+  // At seams, operations that change the number of points are left to rounds with other seams: with
+  // fixed facets, they would need many insertions, and the number of cells is bounded.
   options.postponed = round + 1 < rounds ? local.onSeam.data() : nullptr;
   options.markedFacets.clear();
   for (const std::array<Index, 3>& facet : this->Marked)
@@ -290,7 +291,7 @@ void RankRounds::setOptions(
 }
 
 //------------------------------------------------------------------------------
-/// Makes the figures of ranks those of the whole mesh.
+/// Combines the values of the ranks for the whole mesh.
 void RankRounds::shareRecord(ReconnectionRecord& record) const
 {
   record.smallestAngle = minimum(this->Group, record.smallestAngle);
@@ -307,7 +308,7 @@ void RankRounds::shareRecord(ReconnectionRecord& record) const
 }
 
 //------------------------------------------------------------------------------
-/// @param any whether this rank had cells
+/// @param any whether this rank has cells
 void RankRounds::record(const ReconnectionResult& result, bool any)
 {
   std::vector<ReconnectionRecord>& history = this->Result.history;
@@ -338,7 +339,8 @@ void RankRounds::record(const ReconnectionResult& result, bool any)
 }
 
 //------------------------------------------------------------------------------
-/// What inserted points consist of. @param first the number of the first one of this rank
+/// Adds the interpolation weights of inserted points. @param first the number of the first one of
+/// this rank
 void RankRounds::addShares(const LocalMesh& local, const ReconnectionResult& result, Index first,
   const std::vector<Index>& numbers)
 {
@@ -384,7 +386,7 @@ void RankRounds::addShares(const LocalMesh& local, const ReconnectionResult& res
 }
 
 //------------------------------------------------------------------------------
-/// The part as the result has it, without what is around it.
+/// Stores the part from the result, without its surroundings.
 void RankRounds::takeResult(const LocalMesh& local, const ReconnectionResult& result)
 {
   TetrahedronPiece& part = this->Part;
@@ -403,7 +405,7 @@ void RankRounds::takeResult(const LocalMesh& local, const ReconnectionResult& re
   {
     inserted += used[p] && result.originalPoints[p] < 0;
   }
-  // What the number of cells did not allow is tried again when it may be larger.
+  // Operations prevented by the number of cells are tried again when it may be larger.
   const bool retries = this->Spent < 1.0 &&
     std::count_if(result.originalCells.begin(), result.originalCells.end(),
       [own](Index cell) { return cell < own; }) +
@@ -465,14 +467,14 @@ void RankRounds::takeResult(const LocalMesh& local, const ReconnectionResult& re
 }
 
 //------------------------------------------------------------------------------
-/// Whether a cell is below the target, and may be better.
+/// Whether a cell is below the target and can be improved.
 bool RankRounds::isLeft(const PartCell& cell) const
 {
   return cell.quality < this->Target && cell.bound > (1.0 + AtBound) * cell.quality;
 }
 
 //------------------------------------------------------------------------------
-/// Whether a cell that is left was near a seam in every round.
+/// Whether a remaining cell was near a seam in every round.
 bool RankRounds::neverInside(const PartCell& cell, const PointPlaces& places) const
 {
   return this->isLeft(cell) &&
@@ -491,7 +493,7 @@ bool RankRounds::anyNeverInside()
 }
 
 //------------------------------------------------------------------------------
-/// Where the planes of the next round are not to be: the worst cells count most.
+/// The regions to avoid with the planes of the next round: the worst cells have the largest weight.
 std::vector<Ball> RankRounds::placesToKeep() const
 {
   std::vector<Ball> balls;
@@ -523,7 +525,7 @@ std::vector<Ball> RankRounds::placesToKeep() const
 }
 
 //------------------------------------------------------------------------------
-/// @return whether to go on
+/// @return whether to continue
 bool RankRounds::runRound(int round, int rounds)
 {
   std::vector<Ball> inside;
@@ -578,7 +580,7 @@ bool RankRounds::runRound(int round, int rounds)
 }
 
 //------------------------------------------------------------------------------
-/// Sends the cells to where their original ones are.
+/// Sends the cells to the ranks of their original cells.
 RankReconnection RankRounds::finish()
 {
   std::vector<int> targets;
@@ -588,7 +590,7 @@ RankReconnection RankRounds::finish()
   }
   redistribute(this->Group, targets, this->Part);
   RankReconnection& result = this->Result;
-  std::vector<std::pair<Index, std::size_t>> order; // of cells, by their original ones
+  std::vector<std::pair<Index, std::size_t>> order; // of cells, by their original cells
   for (const PartCell& cell : this->Part.cells)
   {
     order.emplace_back(cell.originCell, order.size());
@@ -654,7 +656,7 @@ RankReconnection improveConnectivity(
   const std::string what = needsOneRank(options);
   if (!what.empty())
   {
-    throw Error("with " + what + ", the mesh is improved on one rank: gather it");
+    throw Error("with " + what + ", the mesh must be improved on one rank: gather it");
   }
   if (rounds < 1)
   {

@@ -24,7 +24,7 @@ SmoothPart::SmoothPart(const SurfacePart& part, double distance)
 bool SmoothPart::accepts(const std::array<Vec3, 3>& corner, const Vec3& normal, double cosine) const
 {
   const auto& [a, b, c] = corner;
-  // The mean normal: slivers of the input may be turned anywhere.
+  // Use the mean normal: slivers of the input may have any orientation.
   Vec3 below = { 0, 0, 0 }, direction;
   std::int32_t piece = -1;
   for (const Vec3& x : { (1.0 / 3.0) * (a + b + c), 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a) })

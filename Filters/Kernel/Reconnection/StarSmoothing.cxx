@@ -7,14 +7,14 @@ namespace
 {
 /// Functions within this of the smallest value are linearized.
 constexpr double Window = 0.12;
-/// A step is kept if it gains this part of what was predicted.
+/// A step is kept if it gains this fraction of the predicted gain.
 constexpr double SufficientFraction = 0.1;
-/// Weight of the square of a step (in units of the shortest edge) at the start, its bounds, and how
-/// it changes after a failure and a success.
+/// Weight of the square of a step (in units of the shortest edge) at the start, its bounds, and its
+/// factors after a failure and a success.
 constexpr double FirstWeight = 2.0, LastWeight = 200.0, Tighten = 4.0, Relax = 0.5;
-/// Exchanges of weight in the dual problem, and the gap at which it is solved.
+/// The number of weight exchanges in the dual problem, and the gap at which it is solved.
 constexpr int DualSteps = 24;
-/// Exchanges before a step without the least gain counts as convergence.
+/// The number of exchanges before a step without the minimum gain is treated as convergence.
 constexpr int LastDualSteps = 60;
 constexpr double DualGap = 5e-4;
 }
@@ -157,9 +157,9 @@ void StarSmoothing::linearize(const Vec3& p, double below)
   }
 }
 
-/// The step D that maximizes min(F + G . D) - weight / 2 |D|^2, by its dual: the convex combination
-/// of the functions that is smallest at its own best step. Returns min(F + G . D). More exchanges
-/// are made while this is below `wanted`: a few may find no gain where there is one.
+/// The step D that maximizes min(F + G . D) - weight / 2 |D|^2, from its dual: the convex
+/// combination of the functions that is smallest at its own best step. Returns min(F + G . D). More
+/// exchanges are made while this is below `wanted`: too few may miss an existing gain.
 double StarSmoothing::solve(double weight, double wanted, Vec3& step)
 {
   const int n = this->Functions;
@@ -219,7 +219,7 @@ double StarSmoothing::maximize(
   }
   const double unit = std::sqrt(this->Length2);
   double weight = FirstWeight;
-  bool current = true; // Values are those at p
+  bool current = true; // Values are up to date at p
   for (int k = 0; k < steps && weight <= LastWeight; ++k)
   {
     this->linearize(p, smallest + Window);

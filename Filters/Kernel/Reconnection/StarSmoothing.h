@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file StarSmoothing.h
- * @brief The position of one point that maximizes the smallest quality of the tetrahedra around.
- * Internal: not installed.
+ * @brief The position of one point that maximizes the smallest quality of the surrounding
+ * tetrahedra. Internal: not installed.
  */
 #ifndef tautline_StarSmoothing_h
 #define tautline_StarSmoothing_h
@@ -14,7 +14,7 @@
 
 namespace tautline
 {
-/// Where a point may go: anywhere, in a plane, along a line, or nowhere.
+/// The freedom of a point: anywhere, in a plane, along a line, or fixed.
 struct PointFreedom
 {
   enum Kind : std::uint8_t
@@ -26,11 +26,11 @@ struct PointFreedom
   };
   Kind kind = Free;
   Vec3 direction = { 0, 0, 0 };
-  /// Of BoundarySurface: the patch (InPlane) or curve (OnLine) of a point whose direction varies,
+  /// For BoundarySurface: the patch (InPlane) or curve (OnLine) of a point whose direction varies,
   /// and the set of patches that the point touches; -1: none.
   std::int32_t part = -1, patches = -1;
-  /// Corners with the same number are nearer to each other than the distance of the boundary, and
-  /// may become one; -1: kept.
+  /// Corners with the same number are closer to each other than the boundary distance and may be
+  /// merged; -1: kept.
   std::int32_t group = -1;
   void fix()
   {
@@ -51,12 +51,12 @@ struct PointFreedom
 /**
  * @brief Maximizes the smallest quality of the tetrahedra that join a point to given triangles, by
  * proximal bundle steps: the sines and mean ratios near the smallest value are linearized, and the
- * step maximizes the smallest of the linear functions less a multiple of its square.
+ * step maximizes the smallest of the linear functions minus a multiple of its square.
  */
 class TAUTLINE_RECONNECTIONKERNEL_EXPORT StarSmoothing
 {
 public:
-  /// Of larger stars vertices stay where they are.
+  /// Vertices of larger stars are not moved.
   static constexpr int MaxFaces = 128;
 
   /// A step is tried if it is predicted to gain this.
@@ -65,7 +65,8 @@ public:
 
   void clear() { this->Size = 0; }
   int size() const { return this->Size; }
-  /// @param a, b, c in the order that makes (point, a, b, c) positive. @return false: no room
+  /// @param a, b, c in the order that makes (point, a, b, c) positive. @return false if there is no
+  ///   room
   bool addFace(const Vec3& a, const Vec3& b, const Vec3& c);
 
   /// The qualities with the point at p, in the order of the faces; returns the smallest.
@@ -76,8 +77,8 @@ public:
    * @brief Improves the position.
    * @param p start, and result; unchanged if no step improves the smallest quality
    * @param steps the largest number of accepted steps
-   * @param project brings a trial position to where the point may be; may be null
-   * @return the smallest quality; qualities() are those at p
+   * @param project projects a trial position onto the allowed set; may be null
+   * @return the smallest quality; qualities() are evaluated at p
    */
   double maximize(Vec3& p, int steps, const PointFreedom& freedom = {},
     const std::function<Vec3(const Vec3&)>& project = nullptr);
@@ -94,7 +95,7 @@ private:
   double Normal[4][MaxFaces];
   double Edges[4][MaxFaces]; ///< ab, bc, ca, and their sum
   double Values[MaxFaces];
-  std::array<std::array<Vec3, 3>, MaxFaces> Faces; ///< of a metric of the registry
+  std::array<std::array<Vec3, 3>, MaxFaces> Faces; ///< for a metric of the registry
   double Length2 = 0;                              ///< the smallest squared edge of the faces
   // Linearized functions, and the weights of their convex combination.
   int Functions = 0;

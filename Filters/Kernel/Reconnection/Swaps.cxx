@@ -6,7 +6,7 @@ namespace tautline
 {
 namespace
 {
-/// Sheets of more faces round the removed one are not looked for.
+/// The maximum depth of sheets of faces around the removed one.
 constexpr int MaxSheetDepth = 4;
 }
 
@@ -86,15 +86,15 @@ bool CavityOperations::isOuter(const EdgeRing& ring) const
 }
 
 /// Whether the edge of an open ring may be swapped: it is between two outer facets that are
-/// coplanar, or of a curved patch.
+/// coplanar or belong to a curved patch.
 bool CavityOperations::canSwapBoundary(const EdgeRing& ring)
 {
   return this->swapsBoundary && ring.size > 1 && this->isOuter(ring) &&
     (this->surface ? this->canSwapCurved(ring) : this->isFlat(ring));
 }
 
-/// Sets up the replacement that removes an edge. Returns false where that is not allowed, or the
-/// smallest quality would not be larger than `above`.
+/// Prepares the replacement that removes an edge. Returns false if it is not allowed, or if the
+/// smallest quality would not exceed `above`.
 bool CavityOperations::prepareEdgeRemoval(TetId t, int i, int j, double above)
 {
   this->Mesh.ring(t, i, j, this->Ring);
@@ -128,9 +128,10 @@ bool CavityOperations::removeEdge(TetId t, int i, int j)
 //------------------------------------------------------------------------------
 /**
  * @brief At the edge u w of a sheet of faces between a and b: closes the sheet with the tetrahedron
- * (a, b, u, w), or extends it by the face across, whichever is better, and adds to the replacement.
- * @param above the tetrahedron of the sheet with a, so that the face across is found from it
- * @return the smallest quality of what is added
+ * (a, b, u, w), or extends it by the face across, whichever is better; adds the result to the
+ * replacement.
+ * @param above the tetrahedron of the sheet with a, from which the face across is found
+ * @return the smallest quality of the added tetrahedra
  */
 double CavityOperations::extendFaces(
   PointId a, PointId b, TetId above, PointId u, PointId w, int depth)
@@ -177,7 +178,7 @@ double CavityOperations::extendFaces(
   return q;
 }
 
-/// Sets up the replacement that removes a face; as prepareEdgeRemoval().
+/// Prepares the replacement that removes a face; like prepareEdgeRemoval().
 bool CavityOperations::prepareFaceRemoval(TetId t, int i, double above)
 {
   if (this->Mesh.isWall(t, i))

@@ -12,22 +12,22 @@ namespace
 {
 /// Edges are split above this length in the metric, and contracted below its inverse.
 constexpr double LongestEdge = 1.4142135623730951;
-/// Rounds at most. A factor of 2 in size takes about one.
+/// The maximum number of rounds. A factor of 2 in size needs about one.
 constexpr int MostRounds = 24;
-/// Rounds end when fewer edges change than this part of all, or when the part of the edges in range
-/// has not grown by so much, nor the deviation of the lengths fallen by such a part of it, in so
-/// many rounds.
+/// Rounds end when less than this fraction of the edges changes, or when, within this number of
+/// rounds, neither the fraction of edges in range has grown by this much nor the deviation of the
+/// lengths has decreased by this fraction.
 constexpr double LeastChange = 2e-3, LeastGain = 3e-3, LeastFall = 0.03;
 constexpr int VainRounds = 2;
-/// In each round, tetrahedra below this quality are swapped; and points move so many times.
+/// In each round, tetrahedra below this quality are swapped, and points move this many times.
 constexpr double SwapTarget = 0.75;
 constexpr int SweepsOfRound = 2;
-/// At the end: so many rounds of swaps and motions, and the quality up to which the worst are
+/// At the end: the number of rounds of swaps and motions, and the quality up to which the worst are
 /// improved.
 constexpr int LastRounds = 3, LastSweeps = 4;
 constexpr double LastTarget = 0.85;
 constexpr double LastGain = 1e-3;
-/// Operations between two calls of `proceed`.
+/// The number of operations between two calls of `proceed`.
 constexpr Index PollInterval = 256;
 }
 
@@ -122,7 +122,7 @@ bool TetrahedronAdaptation::changeEdges(bool tooLong, Index& changed)
     {
       continue;
     }
-    // Points may have moved meanwhile, and the edge be another one's.
+    // Points may have moved in the meantime, or the edge may have changed.
     const double length = edgeLength(this->Mesh.point(edge.b) - this->Mesh.point(edge.a),
       this->Mesh.metric(edge.a), this->Mesh.metric(edge.b));
     if (tooLong ? length <= LongestEdge : length >= 1.0 / LongestEdge)
@@ -195,7 +195,7 @@ bool TetrahedronAdaptation::round(bool& busy)
 }
 
 //------------------------------------------------------------------------------
-/// The worst first, all points being where lengths are best.
+/// Improves the worst first, starting with all points at the best positions for lengths.
 bool TetrahedronAdaptation::finish()
 {
   for (int k = 0; k < LastRounds; ++k)

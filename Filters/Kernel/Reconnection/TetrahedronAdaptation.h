@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TetrahedronAdaptation.h
- * @brief Gives the edges of a tetrahedral mesh their target lengths.
- * Internal: not installed.
+ * @brief Adapts the edges of a tetrahedral mesh to their target lengths. Internal: not installed.
  *
  * Rounds of splits (the longest edges first), contractions (the shortest first), swaps and motions,
  * see A. Loseille and F. Alauzet, "Optimal 3D highly anisotropic mesh adaptation based on the
- * continuous mesh framework" (IMR 2009), until hardly an edge changes.
+ * continuous mesh framework" (IMR 2009), until hardly any edge changes.
  */
 #ifndef tautline_TetrahedronAdaptation_h
 #define tautline_TetrahedronAdaptation_h
@@ -17,7 +16,7 @@
 
 namespace tautline
 {
-/// How many edges there are, and how many have a length in the metric from 1 / sqrt(2) to sqrt(2).
+/// The number of edges, and the number with a length in the metric from 1 / sqrt(2) to sqrt(2).
 struct EdgeShare
 {
   Index edges = 0, inRange = 0;
@@ -29,13 +28,13 @@ struct EdgeShare
   }
 };
 
-/// Without those around a part of a mesh.
+/// Excludes the surroundings of a part of a mesh.
 EdgeShare shareOfEdges(const TetrahedronMesh& mesh);
 
 class TetrahedronAdaptation
 {
 public:
-  /// @param operations with `field`; have to live as long as this, as `passes`
+  /// @param operations with `field`; must outlive this object, as must `passes`
   TetrahedronAdaptation(
     TetrahedronMesh& mesh, CavityOperations& operations, TetrahedronPasses& passes)
     : Mesh(mesh)
@@ -44,16 +43,16 @@ public:
   {
   }
 
-  /// Which operations are used.
+  /// The operations to use.
   bool swaps = true, moves = true, contracts = true, splits = true;
   int threads = 0;
-  /// Called now and then; returns false to stop.
+  /// Called periodically; returns false to stop.
   std::function<bool()> proceed;
-  /// Called after each round with the part of the work that is done, 0 to 1, and the share of edges
-  /// in range; returns false to stop.
+  /// Called after each round with the fraction of the work done, 0 to 1, and the share of edges in
+  /// range; returns false to stop.
   std::function<bool(double fraction, double share)> record;
 
-  /// Runs rounds until hardly an edge changes. @return false if stopped
+  /// Runs rounds until hardly any edge changes. @return false if stopped
   bool run();
 
 private:

@@ -82,7 +82,7 @@ TetrahedronMesh::TetrahedronMesh(TetrahedronArrays arrays)
   , Labels(std::move(arrays.labels))
   , Metrics(std::move(arrays.metrics))
 {
-  for (TetId t = this->slots() - 1; t >= 0; --t) // the next to be used is the first
+  for (TetId t = this->slots() - 1; t >= 0; --t) // so that the first is used next
   {
     if (!this->alive(t))
     {
@@ -158,7 +158,7 @@ bool TetrahedronMesh::isTurned(TetId t, int i) const
   {
     return false;
   }
-  // From the two sides a face has opposite senses.
+  // As seen from its two sides, a face has opposite orientations.
   const TriangleVertices own = this->face(t, i), other = this->face(n >> 2, n & 3);
   const int at = other[0] == own[0] ? 0 : (other[1] == own[0] ? 1 : 2);
   return other[(at + 1) % 3] == own[1];
@@ -174,7 +174,7 @@ void TetrahedronMesh::orientFlat()
     {
       continue;
     }
-    // With the last two exchanged, the faces opposite them are, too.
+    // Exchanging the last two vertices also exchanges their opposite faces.
     std::swap(tet.vertices[2], tet.vertices[3]);
     std::swap(tet.neighbors[2], tet.neighbors[3]);
     for (int i = 2; i < 4; ++i)
@@ -194,7 +194,7 @@ double TetrahedronMesh::metricQuality(const TetVertices& v) const
   return metricShape(x[v[0]], x[v[1]], x[v[2]], x[v[3]], (m[v[0]] + m[v[1]]) + (m[v[2]] + m[v[3]]));
 }
 
-/// Finds the neighbours: faces are filed by their smallest vertex, then compared.
+/// Finds the neighbors: faces are grouped by their smallest vertex, then compared.
 void TetrahedronMesh::connect(int threads)
 {
   struct Use
@@ -231,7 +231,7 @@ void TetrahedronMesh::connect(int threads)
       uses[next[key[0]]++] = { key[1], key[2], 4 * t + i };
     }
   }
-  // Each side of a face is in the list of one vertex.
+  // Each side of a face is listed at one vertex.
   const auto points = static_cast<Index>(this->Points.size());
   std::vector<Index> nonManifold(numberOfChunks(points), 0);
   const auto match = [&](std::int64_t first, std::int64_t last, Index& shared)
@@ -251,6 +251,7 @@ void TetrahedronMesh::connect(int threads)
       {
         ++j;
       }
+      // Exactly two sides form an interior face; more make it nonmanifold.
       if (j - i == 2)
       {
         this->Tets[i->code >> 2].neighbors[i->code & 3] = (i + 1)->code;
@@ -317,7 +318,8 @@ void TetrahedronMesh::ring(TetId t, int i, int j, EdgeRing& ring) const
     ++k;
   }
   int l = 6 - i - j - k;
-  // (i, j, k, l) has to be a positive order: that of the face opposite i, turned so that j leads.
+  // (i, j, k, l) must be a positive order: the order of the face opposite i, rotated so that j
+  // comes first.
   const int* f = OppositeFace[i];
   const int at = f[0] == j ? 0 : (f[1] == j ? 1 : 2);
   k = f[(at + 1) % 3];
@@ -325,7 +327,7 @@ void TetrahedronMesh::ring(TetId t, int i, int j, EdgeRing& ring) const
   PointId back = first.vertices[k], front = first.vertices[l];
   ring.ring[0] = back;
   TetId current = t;
-  // Forward from t over the faces opposite the ring vertex left behind.
+  // Walk forward from t across the faces opposite the previous ring vertex.
   while (true)
   {
     if (ring.size == EdgeRing::MaxSize)
@@ -354,7 +356,7 @@ void TetrahedronMesh::ring(TetId t, int i, int j, EdgeRing& ring) const
     back = front;
     front = next;
   }
-  // The ring is open: from t backwards to its other wall, then into order.
+  // The ring is open: walk backward from t to its other wall, then reorder.
   current = t;
   back = first.vertices[k];
   front = first.vertices[l];
@@ -400,8 +402,8 @@ void TetrahedronMesh::fan(
   }
   const int l = 6 - i - j - k;
   tets.push_back(t);
-  // Over the face opposite one of the other vertices, on and on; then over that opposite the other
-  // one, unless the first way has come back to the start.
+  // Walk repeatedly across the face opposite one of the other vertices, then in the other direction
+  // unless the first walk has returned to the start.
   for (const auto& [start, other] : { std::array<int, 2>{ k, l }, std::array<int, 2>{ l, k } })
   {
     TetId current = t;
@@ -425,6 +427,7 @@ void TetrahedronMesh::fan(
       }
       tets.push_back(current);
       const TetVertices& v = this->Tets[current].vertices;
+      // The exclusive or of all known vertices yields the new one.
       leave = std::exchange(stay, v[0] ^ v[1] ^ v[2] ^ v[3] ^ a ^ b ^ stay);
     }
   }
@@ -519,8 +522,8 @@ TetrahedronMesh::FaceEntry& TetrahedronMesh::FaceTable::find(TriangleVertices& k
   return this->Entries[i];
 }
 
-/// Finds the neighbour of each face of the new tetrahedra; those among themselves are coded as
-/// -2 - (4 * position + face). And the label of each.
+/// Finds the neighbor and the label of each face of the new tetrahedra; neighbors among the new
+/// ones are coded as -2 - (4 * position + face).
 bool TetrahedronMesh::match(const Replacement& replacement)
 {
   const std::uint32_t mark = this->nextMark();
@@ -589,8 +592,8 @@ bool TetrahedronMesh::match(const Replacement& replacement)
   return this->matchBoundary(replacement, outer);
 }
 
-/// Whether the faces that have found no other one are of the boundary, and may be replaced. Sets
-/// the labels of the new ones.
+/// Whether the unmatched faces are on the boundary and may be replaced. Sets the labels of the new
+/// faces.
 /// @param outer the number of faces of the cavity, which come first
 bool TetrahedronMesh::matchBoundary(const Replacement& replacement, std::size_t outer)
 {
@@ -634,7 +637,7 @@ void TetrahedronMesh::detachPoints(const Replacement& replacement)
   }
 }
 
-/// A slot for a tetrahedron: one that is free, or a new one.
+/// A slot for a tetrahedron: a free slot or a new one.
 TetId TetrahedronMesh::takeSlot()
 {
   if (!this->FreeTets.empty())
@@ -663,7 +666,7 @@ bool TetrahedronMesh::replace(const Replacement& replacement, std::vector<TetId>
   {
     return false;
   }
-  // Per region a cell of the input nearby; most replacements are of one region.
+  // Per region: a nearby input cell; most replacements have one region.
   using Place = std::pair<std::int32_t, TetId>;
   const TetId first = replacement.before[0];
   const Place only = { this->Region[first], this->Origin[first] };
@@ -676,7 +679,7 @@ bool TetrahedronMesh::replace(const Replacement& replacement, std::vector<TetId>
     places.emplace_back(region, this->Origin[near]);
   }
   this->detachPoints(replacement);
-  // Ids that are free use again: those of the cavity first.
+  // Reuse free ids, starting with the cavity's.
   for (std::size_t k = 0; k < after; ++k)
   {
     if (k < before)
@@ -688,7 +691,7 @@ bool TetrahedronMesh::replace(const Replacement& replacement, std::vector<TetId>
       created.push_back(this->takeSlot());
     }
   }
-  // Points of the input that are lost are not used again: their ids stay theirs.
+  // The ids of lost input points are not reused.
   std::vector<PointId>& lost = this->FreePoints;
   const std::ptrdiff_t known = static_cast<std::ptrdiff_t>(lost.size());
   for (std::size_t k = 0; k < after; ++k)
@@ -709,7 +712,7 @@ bool TetrahedronMesh::replace(const Replacement& replacement, std::vector<TetId>
       }
     }
   }
-  for (std::size_t k = before; k > after; --k) // the next to be used is the first
+  for (std::size_t k = before; k > after; --k) // so that the first is used next
   {
     this->Tets[replacement.before[k - 1]].vertices.fill(NoId);
     this->FreeTets.push_back(replacement.before[k - 1]);
@@ -744,7 +747,7 @@ void TetrahedronMesh::splitEdge(PointId a, PointId b, PointId p, const std::vect
   const std::vector<double>& qualities, std::vector<TetId>& created)
 {
   created.clear();
-  // The part with a takes the slot, that with b a new one.
+  // The part with a keeps the slot, the part with b gets a new one.
   for (TetId t : fan)
   {
     created.push_back(t);
@@ -842,7 +845,7 @@ std::string TetrahedronMesh::findViolation() const
         this->Tets[n >> 2].neighbors[n & 3] != 4 * t + i ||
         this->label(n >> 2, n & 3) != this->label(t, i))
       {
-        return at("wrong neighbour of tetrahedron ", t);
+        return at("wrong neighbor of tetrahedron ", t);
       }
     }
   }

@@ -5,10 +5,10 @@
  * Internal: not installed.
  *
  * Every change replaces the tetrahedra of a cavity by others with the same outer faces. It is
- * checked before anything is touched: a replacement that does not fit leaves the mesh as it was.
- * Ids of tetrahedra and points that are not involved stay; those that become free are used again,
- * except the ids of the points of the input.
- * Memory: 64 bytes per tetrahedron, 40 per point; 16 more with labels, 48 more with metrics.
+ * checked before any modification: a replacement that does not match leaves the mesh unchanged. Ids
+ * of uninvolved tetrahedra and points stay the same; freed ids are reused, except the ids of input
+ * points. Memory: 64 bytes per tetrahedron, 40 per point; 16 more with labels, 48 more with
+ * metrics.
  */
 #ifndef tautline_TetrahedronMesh_h
 #define tautline_TetrahedronMesh_h
@@ -25,13 +25,13 @@ using TetId = std::int32_t;
 using PointId = std::int32_t;
 
 constexpr std::int32_t NoId = -1;
-/// The region of tetrahedra around a part of a mesh, which are not changed.
+/// The region number of the tetrahedra around a part of a mesh, which are not changed.
 constexpr std::int32_t OutsideRegion = -1;
 
 /// The vertices of the face opposite each vertex, so that (vertex, face) is a positive order.
 constexpr int OppositeFace[4][3] = { { 1, 2, 3 }, { 0, 3, 2 }, { 3, 0, 1 }, { 2, 1, 0 } };
 
-/// A face without a label. A label is the number of a facet that is kept, from 1 on.
+/// A face without a label. A label is the number of a kept facet, starting at 1.
 constexpr std::int32_t NoLabel = 0;
 /// One per face of a tetrahedron.
 using FaceLabels = std::array<std::int32_t, 4>;
@@ -44,7 +44,7 @@ struct Tetrahedron
 {
   TetVertices vertices; ///< the first is NoId if the slot is free
   /// Face i of the tetrahedron meets face `n & 3` of the tetrahedron `n >> 2`, n = neighbors[i];
-  /// NoId: nothing, or a tetrahedron through a face that is not manifold.
+  /// NoId: nothing, or a tetrahedron across a nonmanifold face.
   std::array<std::int32_t, 4> neighbors;
 
   int indexOf(PointId v) const
@@ -60,11 +60,13 @@ struct Tetrahedron
   }
 };
 
-/// The tetrahedra round an edge. For an inner edge (closed) there are as many as ring vertices, and
-/// (a, b, ring[i], ring[i + 1]) are positive; at a wall the ring is open and has one vertex more.
+/// The tetrahedra around an edge. An inner edge has a closed ring with as many tetrahedra as ring
+/// vertices, and (a, b, ring[i], ring[i + 1]) are positive; at a wall, the ring is open and has one
+/// more vertex.
 struct EdgeRing
 {
-  /// Longer rings are not removed: the number of triangulations grows too fast, the gain vanishes.
+  /// Edges with longer rings are not removed: the number of triangulations grows too fast, and the
+  /// gain vanishes.
   static constexpr int MaxSize = 12;
   PointId a = NoId, b = NoId;
   bool closed = false;
@@ -81,15 +83,16 @@ struct Replacement
   std::vector<TetId> before;
   std::vector<TetVertices> after;
   std::vector<double> qualities; ///< of `after`
-  /// Of `after`, where `before` are of several regions; else empty: all are of the first one's.
+  /// The regions of `after` if `before` has several regions; otherwise empty: all have the region
+  /// of the first.
   std::vector<std::int32_t> regions;
-  /// Of the faces of `after`, where labeled faces change; those of outer faces stay, whatever is
-  /// given. Empty: no labeled face may change, except on the boundary, see boundaryLabel.
+  /// The labels of the faces of `after` if labeled faces change; labels of outer faces are always
+  /// kept. Empty: no labeled face may change, except on the boundary, see boundaryLabel.
   std::vector<FaceLabels> labels;
-  /// Whether faces of the boundary may be replaced by others.
+  /// Whether boundary faces may be replaced by others.
   bool opensBoundary = false;
-  /// With opensBoundary and without `labels`: of the new faces of the boundary. Faces of the
-  /// boundary may be replaced that have this one, or none.
+  /// With opensBoundary and without `labels`: the label of the new boundary faces. Boundary faces
+  /// with this label or without a label may be replaced.
   std::int32_t boundaryLabel = NoLabel;
 
   void clear()
@@ -109,15 +112,16 @@ struct Replacement
   }
 };
 
-/// What a mesh is made of. Entries of the same tetrahedron, and of the same point, correspond.
+/// The arrays of a mesh. Entries of the same tetrahedron, and of the same point, correspond.
 struct TetrahedronArrays
 {
-  std::vector<Tetrahedron> tets; ///< also free slots
+  std::vector<Tetrahedron> tets; ///< including free slots
   std::vector<double> quality;
   std::vector<std::int32_t> region;
   std::vector<TetId> origin;
   std::vector<Vec3> points;
-  PointId inputPoints = 0; ///< the first points are the input's: their ids are not used again
+  /// the number of input points, which come first: their ids are not reused
+  PointId inputPoints = 0;
   QualityWeights weights;
   std::vector<FaceLabels> labels;    ///< see TetrahedronMesh::labelFaces(); empty: none
   std::vector<MetricTensor> metrics; ///< one per point; empty: none
@@ -135,10 +139,10 @@ public:
   TetrahedronMesh(std::vector<Vec3> points, const std::vector<TetVertices>& cells,
     const std::vector<std::int32_t>& regions = {}, const QualityWeights& weights = {},
     int threads = 1, std::vector<MetricTensor> metrics = {});
-  /// Connected already: neighbours of all faces are as given.
+  /// For arrays that are already connected: the neighbors of all faces are given.
   explicit TetrahedronMesh(TetrahedronArrays arrays);
 
-  /// Moves everything out; the mesh must not be used afterwards but to be replaced.
+  /// Moves all arrays out; afterwards, the mesh may only be reassigned.
   TetrahedronArrays release();
 
   ///@{ Slots, some of which may be free.
@@ -153,7 +157,7 @@ public:
   const Tetrahedron& tet(TetId t) const { return this->Tets[t]; }
   double quality(TetId t) const { return this->Quality[t]; }
   std::int32_t region(TetId t) const { return this->Region[t]; }
-  /// The input's tetrahedron a new one was made near; its own id for those of the input.
+  /// The input tetrahedron near which a new one was created; for an input tetrahedron, its own id.
   TetId origin(TetId t) const { return this->Origin[t]; }
   const Vec3& point(PointId v) const { return this->Points[v]; }
   TetId tetOf(PointId v) const { return this->PointTet[v]; }
@@ -162,16 +166,16 @@ public:
 
   /// Whether both tetrahedra at face i are on the same side of it, by the order of their vertices.
   bool isTurned(TetId t, int i) const;
-  /// Gives flat tetrahedra, whose order of vertices means nothing, the order of those around.
+  /// Orients flat tetrahedra, whose vertex order is meaningless, like their neighbors.
   void orientFlat();
-  /// Faces that are used by three or more tetrahedra; these are walls on all sides.
+  /// The number of faces used by three or more tetrahedra; these are walls on all sides.
   Index nonManifoldFaces() const { return this->NonManifoldFaces; }
   /**
    * @brief Labels faces with their number in the list plus 1, the first of equal ones. Labeled
-   * faces between two tetrahedra are walls, whatever is around them. Triples that are no faces are
-   * ignored. To be called before any replacement.
-   * @param boundary whether faces of the boundary are labeled, too
-   * @return how many between two tetrahedra
+   * faces between two tetrahedra are always walls. Triples that are not faces are ignored. Must be
+   * called before any replacement.
+   * @param boundary whether boundary faces are also labeled
+   * @return the number of labeled faces between two tetrahedra
    */
   Index labelFaces(const std::vector<TriangleVertices>& faces, bool boundary);
   bool hasLabels() const { return !this->Labels.empty(); }
@@ -221,42 +225,41 @@ public:
   void star(PointId v, std::vector<TetId>& tets);
   /**
    * @brief All tetrahedra at the edge of vertices i and j of a tetrahedron, across walls.
-   * @param walls set to the walls at the edge: faces i of tetrahedra t, as 4 t + i, each from one
-   * side, or from both
+   * @param walls set to the walls at the edge: faces i of tetrahedra t, as 4 t + i, from one or
+   * both sides
    */
   void fan(TetId t, int i, int j, std::vector<TetId>& tets, std::vector<std::int32_t>& walls) const;
-  /// The tetrahedra round the edge of vertices i and j of a tetrahedron, up to walls.
+  /// The tetrahedra around the edge of vertices i and j of a tetrahedron, up to walls.
   void ring(TetId t, int i, int j, EdgeRing& ring) const;
 
-  /// A point without tetrahedra. The next replacement may use it; else release it.
+  /// Adds a point without tetrahedra. The next replacement may use it; otherwise release it.
   PointId addPoint(const Vec3& x, const MetricTensor& metric = {});
-  /// The id that addPoint() will return; below pointSlots() if it was used before.
+  /// The id that addPoint() will return; below pointSlots() if it is a reused id.
   PointId nextPoint() const
   {
     return this->FreePoints.empty() ? this->pointSlots() : this->FreePoints.back();
   }
   void releasePoint(PointId v);
-  /// Takes a point back that a replacement has just freed, at its place as it was.
+  /// Restores a point that a replacement has just freed, at its former position.
   void reclaimPoint(PointId v);
   /// Moves a vertex. @param tets its whole star
-  /// @param qualities theirs afterwards; null: to be computed
+  /// @param qualities their qualities afterwards; null: compute them
   void movePoint(PointId v, const Vec3& x, const std::vector<TetId>& tets, const double* qualities);
 
   /**
    * @brief Replaces tetrahedra of one region by others with the same outer faces. Vertices that
-   * lose all tetrahedra become free. Replacing the created ones by the former ones, the last
-   * replacement first, restores all ids.
+   * lose all tetrahedra become free. Undoing replacements in reverse order restores all ids.
    * @param created set to the ids of `after`, in order
    * @return false if the faces do not match; nothing has changed then
    */
   bool replace(const Replacement& replacement, std::vector<TetId>& created);
 
   /**
-   * @brief Divides an edge in two by a point, and each tetrahedron at it.
+   * @brief Divides an edge by a point, and each tetrahedron at it.
    * @param p a new point, from addPoint()
    * @param fan of the edge from a to b
-   * @param qualities of the parts of each tetrahedron, that with a and that with b, in turn
-   * @param created set to the ids of these
+   * @param qualities of the two parts of each tetrahedron, first with a, then with b
+   * @param created set to the ids of these parts
    */
   void splitEdge(PointId a, PointId b, PointId p, const std::vector<TetId>& fan,
     const std::vector<double>& qualities, std::vector<TetId>& created);
@@ -311,7 +314,7 @@ private:
   QualityWeights Weights;
   std::vector<FaceLabels> Labels;    ///< empty: none
   std::vector<MetricTensor> Metrics; ///< empty: none
-  // Of replace(), kept to save allocations.
+  // Work space of replace(), kept to save allocations.
   FaceTable Faces;
   std::vector<std::array<std::int32_t, 4>> Links;
   std::vector<FaceLabels> LinkLabels;

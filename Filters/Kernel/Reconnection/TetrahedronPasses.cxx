@@ -9,7 +9,7 @@ namespace tautline
 {
 namespace
 {
-/// Operations are tried so many times between two calls of `proceed`.
+/// The number of attempts between two calls of `proceed`.
 constexpr Index ProceedInterval = 64;
 }
 
@@ -32,7 +32,7 @@ double TetrahedronPasses::bound(TetId t) const
     const Vec3 n = cross(b - a, c - a);
     normals[walls++] = (1.0 / norm(n)) * n;
   }
-  // Two walls at one edge: the angle between them stays, or is divided.
+  // Two walls at one edge: the angle between them is preserved or divided.
   for (int i = 0; i < walls; ++i)
   {
     for (int j = i + 1; j < walls; ++j)
@@ -67,7 +67,7 @@ bool TetrahedronPasses::isFlagged(TetId t, const std::vector<char>& flags) const
     [&](PointId p) { return p < static_cast<PointId>(flags.size()) && flags[p]; });
 }
 
-/// Whether a pass starts with a tetrahedron; it does not with those outside a block.
+/// Whether a pass starts with a tetrahedron; not for tetrahedra outside a block.
 bool TetrahedronPasses::startsWith(TetId t) const
 {
   return this->Mesh.alive(t) && this->Mesh.region(t) >= 0 &&
@@ -160,8 +160,7 @@ bool TetrahedronPasses::improve(TetId t, const PassOptions& options)
   return false;
 }
 
-/// Improves the facets of the boundary whose mean ratio bounds qualities below a target, the worst
-/// first.
+/// Improves the boundary facets whose mean ratio bounds qualities below a target, the worst first.
 Index TetrahedronPasses::runFacets(double target)
 {
   const double weight = this->Mesh.weights().meanRatio;
@@ -245,7 +244,8 @@ Index TetrahedronPasses::run(const PassOptions& options)
     }
   }
   ++this->PassNumber;
-  // What the most thorough passes tried in vain is left out until something changes around.
+  // Tetrahedra on which the most thorough passes failed are skipped until their surroundings
+  // change.
   const std::int16_t effort = !options.compound ? 0 : options.repairs > 0 ? 2 : 1;
   this->Operations.prepareStamps();
   this->Operations.setLeastGain(options.leastGain);
@@ -288,7 +288,7 @@ Index TetrahedronPasses::run(const PassOptions& options)
     else
     {
       ++failures;
-      // With another number of tetrahedra what was not allowed may be.
+      // With another number of tetrahedra, formerly prevented operations may be allowed.
       this->Tried[t] = { this->Operations.clock() + 1, this->PassNumber,
         this->Operations.countLimited ? std::int16_t(0) : effort };
     }

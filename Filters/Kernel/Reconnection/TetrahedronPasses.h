@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TetrahedronPasses.h
- * @brief The order in which reconnection works on tetrahedra: the worst first.
- * Internal: not installed.
+ * @brief The order in which reconnection processes tetrahedra: worst first. Internal: not
+ * installed.
  */
 #ifndef tautline_TetrahedronPasses_h
 #define tautline_TetrahedronPasses_h
@@ -14,24 +14,27 @@
 
 namespace tautline
 {
-/// One pass: which tetrahedra are improved, and how.
+/// One pass: the tetrahedra to improve, and the operations.
 struct PassOptions
 {
-  double target = 1;      ///< tetrahedra below this quality are worked on
-  bool swap = true;       ///< removal of edges and faces
-  bool smooth = true;     ///< motion of vertices
-  bool skipsBound = true; ///< tetrahedra that their walls allow no better are left out
+  double target = 1;  ///< tetrahedra below this quality are processed
+  bool swap = true;   ///< removal of edges and faces
+  bool smooth = true; ///< motion of vertices
+  /// whether to skip tetrahedra that cannot be better because of their walls
+  bool skipsBound = true;
   bool contract = false;
   bool insert = false;
-  bool facets = false;     ///< facets of the boundary are improved first
-  bool compound = false;   ///< also insertions (and contractions) that pay only after smoothing
-  Index maxFailures = 0;   ///< ends after so many tetrahedra tried in vain; 0: no limit
-  int repairs = 0;         ///< see CavityOperations::repairs
-  int smoothingSteps = 2;  ///< of a vertex, each time
-  double leastGain = 2e-3; ///< a vertex is moved if its star's smallest quality gains so much
+  bool facets = false; ///< whether boundary facets are improved first
+  /// whether to try insertions (and contractions) that only pay off after smoothing
+  bool compound = false;
+  Index maxFailures = 0;  ///< ends after this many unsuccessful tetrahedra; 0: no limit
+  int repairs = 0;        ///< see CavityOperations::repairs
+  int smoothingSteps = 2; ///< of a vertex, each time
+  /// a vertex is moved if the smallest quality of its star gains this much
+  double leastGain = 2e-3;
 };
 
-/// Works on tetrahedra below a target, worst first, until none of them can be improved.
+/// Processes tetrahedra below a target, worst first, until none of them can be improved.
 class TetrahedronPasses
 {
 public:
@@ -41,24 +44,24 @@ public:
   {
   }
 
-  /// Called now and then with the number of operations so far; returns false to stop.
+  /// Called periodically with the number of operations so far; returns false to stop.
   std::function<bool()> proceed;
 
-  /// One flag per point. A pass starts with the tetrahedra that have a point with it; empty: with
+  /// One flag per point. A pass starts with the tetrahedra that have a flagged point; empty: with
   /// all.
   std::vector<char> starts;
-  /// One flag per point. Tetrahedra that have a point with it are only improved by what keeps the
-  /// number of points; empty: none.
+  /// One flag per point. Tetrahedra with a flagged point are only improved by operations that
+  /// preserve the number of points; empty: none.
   std::vector<char> postponed;
 
-  /// Runs a pass. @return the number of operations that were accepted, or -1 if stopped
+  /// Runs a pass. @return the number of accepted operations, or -1 if stopped
   Index run(const PassOptions& options);
 
-  /// Whether the last pass ended for PassOptions::maxFailures.
+  /// Whether the last pass ended because of PassOptions::maxFailures.
   bool exhausted() const { return this->Exhausted; }
 
-  /// An upper bound of the quality a tetrahedron can have for the walls it has: their mean ratios
-  /// and the angles between them.
+  /// An upper bound of the quality of a tetrahedron, given by the mean ratios of its walls and the
+  /// angles between them.
   double bound(TetId t) const;
   bool isAtBound(TetId t) const;
 
@@ -75,12 +78,12 @@ private:
   CavityOperations& Operations;
   QualityQueue<TetId> Waiting;
   bool Exhausted = false;
-  /// The last attempt in vain.
+  /// The last unsuccessful attempt.
   struct Attempt
   {
     std::uint32_t clock = 0; ///< after it
     std::int16_t pass = 0;   ///< the number of the pass
-    std::int16_t effort = 0; ///< which later passes need not repeat it
+    std::int16_t effort = 0; ///< later passes with at most this effort need not repeat it
   };
   std::int16_t PassNumber = 0;
   std::vector<Attempt> Tried; ///< per slot

@@ -13,16 +13,16 @@ namespace tautline
 namespace
 {
 using Facet = std::array<Index, 3>;
-/// So many centroids for each rank decide where the planes are.
+/// The number of centroids per rank that determine the planes.
 constexpr Index SamplesOfRank = 2000;
-/// The frames of directions are used in turn, and the planes are moved by so much more of the
-/// cells, to the one side and to the other, in so many steps.
+/// The frames of directions are used in turn, and the planes are shifted by increasing fractions of
+/// the cells, alternately to either side, in this number of steps.
 constexpr int Shifts = 7;
 constexpr double Shift = 0.08;
-/// So many centroids are sorted at most to find the planes of a round.
+/// The maximum number of centroids sorted to find the planes of a round.
 constexpr std::size_t MostSorted = 1000000;
 
-/// By which part of the cells planes are moved in a step.
+/// The fraction of the cells by which planes are shifted in a step.
 double shiftOf(int step)
 {
   return (step % 2 == 1 ? Shift : -Shift) * ((step + 1) / 2);
@@ -39,7 +39,7 @@ std::array<Index, 4> sorted(std::array<Index, 4> points)
   return points;
 }
 
-/// The points of cells. @param places those of the points of the part
+/// The points of cells. @param places the positions of the points of the part
 std::vector<PartPoint> pointsOf(
   const TetrahedronPiece& part, const PointPlaces& places, const std::vector<PartCell>& cells)
 {
@@ -103,7 +103,8 @@ std::uint64_t hashOf(const PartCell& cell)
 /// Planes that divide a sample among ranks.
 using RankTree = BisectionTree<CuttingFrame>;
 
-/// How near planes come to the centre of a ball: 0 at the radius or farther, the weight at it.
+/// The cost of the proximity of planes to the center of a ball: 0 at the radius or farther, the
+/// weight at the center.
 double costOf(const RankTree& tree, const CuttingFrame& frame, const Ball& ball)
 {
   double nearest = ball.radius;
@@ -116,8 +117,8 @@ double costOf(const RankTree& tree, const CuttingFrame& frame, const Ball& ball)
   return ball.weight * (1.0 - nearest / ball.radius);
 }
 
-/// The planes of a round: of those in all directions but the last ones and at all places the ones
-/// that cost least. @param frame of the last round, -1 before the first one; gets that of this one
+/// The planes of a round: the cheapest over all shifts and all directions except the last ones.
+/// @param frame of the last round, -1 before the first one; set to the frame of this round
 RankTree chooseTree(
   std::vector<Vec3> sample, int ranks, const std::vector<Ball>& inside, int& frame)
 {
@@ -161,13 +162,13 @@ RankTree chooseTree(
   return best;
 }
 
-/// Keeps the directory entry of what has a first number.
+/// The rank with the directory entry of items with this first number.
 int directoryOf(Index number, int ranks)
 {
   return static_cast<int>(number % ranks);
 }
 
-/// A facet that one cell of a rank has.
+/// A facet of exactly one cell of a rank.
 struct OuterFacet
 {
   Facet facet;
@@ -179,7 +180,7 @@ struct OuterFacet
   }
 };
 
-/// The other rank that has the facet of a cell.
+/// The other rank that has a facet of a cell.
 struct Neighbour
 {
   Index cell, rank;
@@ -198,12 +199,13 @@ void throwIfAny(RankGroup& group, Index facets)
 /// All facets of the cells of a part, in increasing order.
 std::vector<OuterFacet> sortedFacets(const TetrahedronPiece& part, Index rank)
 {
-  // Those with the same first point together, then in order among themselves.
+  // Group facets by their first point, then sort each group.
   const PointPlaces places(part.points);
   std::vector<std::size_t> begins(part.points.size() + 1, 0);
   std::vector<std::array<Index, 4>> numbers;
   numbers.reserve(part.cells.size());
-  constexpr std::size_t withFirst = 3; // facets that have the first of four points; one has not
+  // number of facets with the first of four points; one lacks it
+  constexpr std::size_t withFirst = 3;
   for (const PartCell& cell : part.cells)
   {
     numbers.push_back(sorted(cell.points));
@@ -231,8 +233,8 @@ std::vector<OuterFacet> sortedFacets(const TetrahedronPiece& part, Index rank)
   return facets;
 }
 
-/// Pairs the outer facets of all ranks. @param paired gets those of this rank that have a cell on
-/// another one
+/// Pairs the outer facets of all ranks. @param paired receives the facets of this rank that have a
+/// cell on another one
 std::vector<Neighbour> findNeighbours(
   RankGroup& group, const std::vector<OuterFacet>& outer, std::vector<Facet>& paired)
 {
@@ -273,7 +275,7 @@ std::vector<Neighbour> findNeighbours(
   return neighbours;
 }
 
-/// Which of the points of outer facets other ranks have, too.
+/// The points of outer facets that other ranks also have.
 std::vector<Index> findShared(RankGroup& group, const std::vector<OuterFacet>& outer)
 {
   std::vector<Index> own;
@@ -336,7 +338,7 @@ Index placeOf(const std::vector<PartPoint>& points, Index number)
 Vec3 centroidOf(const TetrahedronPiece& part, const PointPlaces& places, const PartCell& cell)
 {
   Vec3 sum = { 0, 0, 0 };
-  for (const Index number : sorted(cell.points)) // the same sum wherever the cell is
+  for (const Index number : sorted(cell.points)) // the same sum on any rank
   {
     sum += part.points[places(number)].x;
   }
@@ -393,7 +395,7 @@ std::vector<int> divideAmongRanks(
   for (const PartCell& cell : part.cells)
   {
     centroids.push_back(centroidOf(part, places, cell));
-    // Chosen by its points: the same cells wherever they are.
+    // Selected by its points: the same cells on any rank.
     if (hashOf(cell) % static_cast<std::uint64_t>(step) == 0)
     {
       own.push_back(centroids.back());

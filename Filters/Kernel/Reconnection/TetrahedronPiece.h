@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TetrahedronPiece.h
- * @brief Tetrahedra that move between ranks, with the points they need.
- * Internal: not installed.
+ * @brief Tetrahedra that move between ranks, with their points. Internal: not installed.
  */
 #ifndef tautline_TetrahedronPiece_h
 #define tautline_TetrahedronPiece_h
@@ -16,17 +15,17 @@
 
 namespace tautline
 {
-/// A point, as it is sent.
+/// A point in the form in which it is sent.
 struct PartPoint
 {
   Index number = 0;
   Vec3 x = { 0, 0, 0 };
   unsigned char fixed = 0;
-  /// Was near a seam in every round so far, or where a rank had no more cells to add.
+  /// Whether it was near a seam in every round so far, or on a rank that could not add more cells.
   unsigned char onAllSeams = 0;
 };
 
-/// A tetrahedron, as it is sent.
+/// A tetrahedron in the form in which it is sent.
 struct PartCell
 {
   std::array<Index, 4> points = { 0, 0, 0, 0 }; ///< numbers
@@ -43,15 +42,15 @@ struct PartShare
   double weight = 0;
 };
 
-/// A place that planes are to be away from by a radius, above 0; the weight is what it costs to
-/// have a plane there.
+/// A region that planes should avoid, with a radius above 0; the weight is the cost of a plane
+/// through the center.
 struct Ball
 {
   Vec3 center;
   double radius, weight;
 };
 
-/// What a rank works on.
+/// The part of a rank.
 struct TetrahedronPiece
 {
   std::vector<PartPoint> points; ///< in increasing order of the numbers
@@ -59,29 +58,30 @@ struct TetrahedronPiece
   std::vector<PartShare> shares; ///< in increasing order of the points
 };
 
-/// Sorts points; of those with the same number one is left, with the flags of all.
+/// Sorts points and merges points with the same number, combining their flags.
 void unitePoints(std::vector<PartPoint>& points);
 
-/// The place of a point in a sorted list; it must be there.
+/// The position of a point in a sorted list; it must be present.
 Index placeOf(const std::vector<PartPoint>& points, Index number);
 
 /**
  * @class tautline::PointPlaces
- * @brief placeOf() for many numbers: a table of intervals tells where.
+ * @brief placeOf() for many numbers, with a table of intervals.
  */
 class PointPlaces
 {
 public:
-  /// @param points must outlive this, and not change
+  /// @param points must outlive this object unchanged
   explicit PointPlaces(const std::vector<PartPoint>& points)
     : Points(points)
     , Intervals(static_cast<Index>(points.size()), [&](Index p) { return points[p].number; })
   {
   }
-  /// It has a table in proportion to the points; algorithms take a function by value.
+  /// Not copyable, because the table is as large as the points and algorithms take functions by
+  /// value.
   PointPlaces(const PointPlaces&) = delete;
   PointPlaces& operator=(const PointPlaces&) = delete;
-  /// As placeOf().
+  /// Like placeOf().
   Index operator()(Index number) const
   {
     return this->Intervals.find(number, [this](Index p) { return this->Points[p].number; });
@@ -92,36 +92,39 @@ private:
   NumberIntervals Intervals;
 };
 
-/// The centroid of a cell. @param places those of the points of the part
+/// The centroid of a cell. @param places the positions of the points of the part
 Vec3 centroidOf(const TetrahedronPiece& part, const PointPlaces& places, const PartCell& cell);
 
-/// Sends each cell to a rank, with its points and their shares. The order of what a rank has then
-/// does not depend on where it was. Collective.
+/// Sends each cell to a rank, with its points and their shares. The resulting order on a rank does
+/// not depend on the previous distribution. Collective.
 void redistribute(RankGroup& group, const std::vector<int>& targets, TetrahedronPiece& part);
 
 /**
- * @brief The rank that each cell goes to in a round: planes across the longest extents, in
- * directions that change from round to round, such that all ranks get about as many. Collective.
- * @param inside where planes are not to be. They are moved, and turned, to where this costs least.
- * @param frame the CuttingFrame of the last round, -1 before the first one; gets another one
+ * @brief The rank of each cell in a round: planes perpendicular to the longest extents, in
+ * directions that change between rounds, such that all ranks get about the same number of cells.
+ * Collective.
+ * @param inside regions that planes should avoid. They are shifted and rotated to minimize the
+ *   cost.
+ * @param frame the CuttingFrame of the last round, -1 before the first one; set to a different one
  */
 std::vector<int> divideAmongRanks(
   RankGroup& group, const TetrahedronPiece& part, const std::vector<Ball>& inside, int& frame);
 
-/// What is around a part.
+/// The surroundings of a part.
 struct PartSurroundings
 {
-  std::vector<PartCell> cells;   ///< those of other ranks that share a facet with the part
-  std::vector<PartPoint> points; ///< theirs, in increasing order of the numbers
-  /// Points that other ranks have, in increasing order.
+  std::vector<PartCell> cells;   ///< cells of other ranks that share a facet with the part
+  std::vector<PartPoint> points; ///< their points, in increasing order of the numbers
+  /// Points that other ranks also have, in increasing order.
   std::vector<Index> shared;
-  /// Of the marked facets, the sides that have a cell of the part, if there is a cell on the other
-  /// side, too, here or on another rank.
+  /// The number of sides of marked facets with a cell of the part, if there is also a cell on the
+  /// other side, here or on another rank.
   Index markedSides = 0;
 };
 
 /**
- * @brief Finds them; throws Error on all ranks for facets of three or more cells. Collective.
+ * @brief Finds the surroundings; throws Error on all ranks for facets of three or more cells.
+ * Collective.
  * @param marked sorted numbers of points, in increasing order
  */
 PartSurroundings surroundingsOf(

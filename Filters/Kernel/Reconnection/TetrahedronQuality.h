@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TetrahedronQuality.h
- * @brief The quality that reconnection maximizes, of one tetrahedron.
- * Internal: not installed.
+ * @brief The quality of one tetrahedron that reconnection maximizes. Internal: not installed.
  *
  * q = min(smallest sine of the six dihedral angles, (mean ratio)^(3/2)), 1 for the regular
  * tetrahedron, at most 0 for one that is degenerate or inverted. With d = 6 V, an edge of length l
- * between faces with normals m and n (twice their areas long), and S the sum of the six squared
- * edges: sine = d l / (|m| |n|), (mean ratio)^(3/2) = 12 sqrt(3) d / S^(3/2). The sine alone
- * accepts flat shapes, the mean ratio alone small angles. Weights shift the balance. Or q is made
- * from a metric of the registry (MetricQuality), or is the shape in a metric tensor.
+ * between faces with normals m and n (with twice their areas as length), and the sum S of the six
+ * squared edges: sine = d l / (|m| |n|), (mean ratio)^(3/2) = 12 sqrt(3) d / S^(3/2). The sine
+ * alone accepts flat shapes, the mean ratio alone small angles. Weights shift the balance.
+ * Alternatively, q is derived from a metric of the registry (MetricQuality) or is the shape in a
+ * metric tensor.
  */
 #ifndef tautline_TetrahedronQuality_h
 #define tautline_TetrahedronQuality_h
@@ -23,25 +23,25 @@
 
 namespace tautline
 {
-/// 12 sqrt(3): makes (mean ratio)^(3/2) of the regular tetrahedron 1.
+/// 12 sqrt(3): normalizes (mean ratio)^(3/2) to 1 for the regular tetrahedron.
 constexpr double MeanRatioFactor = 20.784609690826528;
 
-/// Below this quality the sign of the volume is that of the exact predicate: rounding of
-/// differences and products changes q by some 1e-15.
+/// Below this quality, the sign of the volume is determined by the exact predicate: rounding of
+/// differences and products changes q by about 1e-15.
 constexpr double CertainQuality = 1e-9;
 
-/// Factors of what the quality is the smaller of: q = min(sine * the smallest sine, meanRatio *
-/// (mean ratio)^(3/2)). A large one leaves the other alone.
+/// The weights in q = min(sine * the smallest sine, meanRatio * (mean ratio)^(3/2)). A large weight
+/// disables its term.
 struct QualityWeights
 {
   double sine = 1, meanRatio = 1;
-  /// Instead of both; the weights are then large, so that bounds by them hold.
+  /// Used instead of both; the weights are then large, so that bounds based on them hold.
   const MetricQuality* metric = nullptr;
-  /// Instead of all these: metricShape() in the mean of the metric tensors of the corners.
+  /// Used instead of all these: metricShape() in the mean of the metric tensors of the corners.
   bool inMetric = false;
 };
 
-/// What the quality is the smaller of, and the sign of the volume.
+/// The terms of the quality, and the sign of the volume.
 struct TetrahedronMeasures
 {
   double determinant = 0; ///< 6 V, as rounded
@@ -112,7 +112,7 @@ inline double metricShape(
   return sum > 0.0 ? MeanRatioFactor * volume / (sum * std::sqrt(sum)) : 0.0;
 }
 
-/// A quality as computed, with the sign of the volume by the exact predicate.
+/// A computed quality with the sign of the volume from the exact predicate.
 inline double exactSign(double q, const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c)
 {
   if (q > CertainQuality)
@@ -123,14 +123,14 @@ inline double exactSign(double q, const Vec3& p, const Vec3& a, const Vec3& b, c
   return orientation(p, a, b, c) > 0 ? std::max(q, tiny) : std::min(q, 0.0);
 }
 
-/// The quality; positive exactly if the volume is, by the exact predicate.
+/// The quality; positive if and only if the volume is, by the exact predicate.
 inline double exactQuality(
   const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c, const QualityWeights& weights = {})
 {
   return exactSign(roundedQuality(p, a, b, c, weights), p, a, b, c);
 }
 
-/// The six dihedral angles in degrees; those of an inverted tetrahedron are of its mirror image.
+/// The six dihedral angles in degrees; for an inverted tetrahedron, the angles of its mirror image.
 inline std::array<double, 6> dihedralAngles(
   const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c)
 {

@@ -13,35 +13,35 @@ namespace tautline
 namespace
 {
 constexpr double ShortestEdge = 1.0 / TriangleAdaptation::LongestEdge;
-/// The smallest quality after a contraction, unless it was smaller before: then it is at least
-/// this part of that.
+/// The smallest allowed quality after a contraction or, if it was smaller before, the fraction of
+/// that.
 constexpr double LeastQuality = 0.4, LeastPart = 0.8;
-/// The same of a split: it makes no triangle worse that is below this.
+/// The same for a split: it does not make triangles below this quality worse.
 constexpr double LeastAfterSplit = 0.2;
-/// Splits of longer edges may leave edges shorter than ShortestEdge, at least the inverse: between
-/// walls close to each other there are no others.
+/// Splits of longer edges may leave edges shorter than ShortestEdge, but at least the inverse:
+/// between close walls, longer ones are impossible.
 constexpr double MuchTooLong = 2.0;
-/// Sweeps over all points in a round.
+/// The number of sweeps over all points in a round.
 constexpr int SweepsOfRound = 3;
 /// A motion is made if it is at least this long in the metric, and decreases the energy by this
-/// part.
+/// fraction.
 constexpr double LeastMotion = 0.01, LeastEnergyGain = 1e-3;
-/// Of the point that remains after a contraction, or is new, where the change alone is not good.
+/// The number of motions of the remaining or new point if the change alone is not good enough.
 constexpr int MotionsAfterChange = 3;
-/// Trials of a motion, each half as long as the one before.
+/// The number of trials of a motion, each half as long as the previous one.
 constexpr int MotionTrials = 3;
-/// Operations between two calls of `proceed`.
+/// The number of operations between two calls of `proceed`.
 constexpr Index StepsBetweenChecks = 256;
 /// Edges are coded in 31 bits.
 constexpr Index MaxTriangles = std::numeric_limits<std::int32_t>::max() / 8;
-/// Of the unit triangle: twice its area, squared.
+/// For the unit triangle: twice its area, squared.
 constexpr double UnitArea2 = 0.75;
 
 /**
- * @brief How far a triangle is from the unit one: (2 S / 3) (1 + 3 / (4 D^2)) - 4, with the sum S
- * of the squared edges and twice the area D in the metric. With the matrix T that maps the unit
- * triangle to it, this is |T|^2 + |T^-1|^2 - 4: 0 for the unit triangle, infinite for flat ones.
- * As a function of a vertex, with gradient and second derivatives.
+ * @brief The deviation of a triangle from the unit one: (2 S / 3) (1 + 3 / (4 D^2)) - 4, with the
+ * sum S of the squared edges and twice the area D in the metric. With the matrix T that maps the
+ * unit triangle to it, this is |T|^2 + |T^-1|^2 - 4: 0 for the unit triangle, infinite for flat
+ * ones. As a function of a vertex, with gradient and second derivatives.
  */
 struct UnitEnergy
 {
@@ -55,7 +55,7 @@ struct UnitEnergy
                        : std::numeric_limits<double>::infinity();
   }
 
-  /// @param u, v the other corners, seen from the vertex
+  /// @param u, v the other corners, relative to the vertex
   void add(const Vec3& u, const Vec3& v, const PlaneTensor& m)
   {
     const auto applied = [&m](const Vec3& e) {
@@ -84,7 +84,7 @@ struct UnitEnergy
     }
   }
 
-  /// Newton's step; along the gradient where that is no descent.
+  /// Newton's step; along the gradient if that is not a descent direction.
   Vec3 step() const
   {
     const double determinant = this->h[0] * this->h[2] - this->h[1] * this->h[1];
@@ -118,7 +118,7 @@ MetricTensor meanOf(const MetricTensor& a, const MetricTensor& b, const MetricTe
   return mean;
 }
 
-/// Heaps have the largest entry first: the longest edge, of equal ones the first.
+/// Heaps have the largest entry first: the longest edge, or the first of equal ones.
 constexpr auto LongestFirst = [](const auto& a, const auto& b)
 {
   return std::make_tuple(a.length, b.low, b.high, b.triangle) <
@@ -153,7 +153,7 @@ bool TriangleAdaptation::makeEdge(TriId t, int i, Edge& edge) const
   return true;
 }
 
-/// Whether it is the edge that was put on the heap.
+/// Whether it is still the edge that was put on the heap.
 bool TriangleAdaptation::isStill(const Edge& edge) const
 {
   if (edge.triangle >= this->Mesh.slots() || !this->Mesh.alive(edge.triangle))
@@ -193,7 +193,7 @@ void TriangleAdaptation::pushChanged(const Less& less, const Wanted& wanted)
   {
     for (int i = 0; this->Mesh.alive(t) && i < 3; ++i)
     {
-      // From both sides: the other one may be none of the changed triangles.
+      // Check from both sides: the other triangle may not be among the changed ones.
       const Corners& v = this->Mesh.triangle(t).vertices;
       const VertexId a = v[Next[i]], b = v[Previous[i]];
       const double length = this->Mesh.length(a, b);
@@ -207,7 +207,7 @@ void TriangleAdaptation::pushChanged(const Less& less, const Wanted& wanted)
 }
 
 //------------------------------------------------------------------------------
-/// Flips the edges opposite a point, and those that this brings opposite it.
+/// Flips the edges opposite a point, and edges that become opposite to it.
 void TriangleAdaptation::flipAround(VertexId p)
 {
   this->Mesh.star(p, this->Stack);
@@ -252,8 +252,8 @@ bool TriangleAdaptation::isGoodAround(VertexId p, const Unwanted& unwanted, cons
 
 /**
  * @brief Carries out a change, then flips around a point and moves it; keeps this only if no
- * triangle becomes bad and no edge of the point has an unwanted length.
- * @param change returns the point, negative: it is not possible
+ * triangle becomes bad and no edge of the point gets an unwanted length.
+ * @param change returns the point; negative if it is not possible
  */
 template <class Change, class Unwanted>
 bool TriangleAdaptation::changeAndMove(
@@ -405,7 +405,7 @@ bool TriangleAdaptation::splitAll()
 }
 
 //------------------------------------------------------------------------------
-/// Whether vertex i may go to where vertex j is.
+/// Whether vertex i may move to the position of vertex j.
 bool TriangleAdaptation::mayMoveInto(TriId t, int i, int j) const
 {
   const PointFreedom& freedom = this->Operations.freedoms[this->Mesh.triangle(t).vertices[i]];
@@ -413,7 +413,7 @@ bool TriangleAdaptation::mayMoveInto(TriId t, int i, int j) const
     (freedom.kind == PointFreedom::OnLine && this->Mesh.isWall(t, 3 - i - j));
 }
 
-/// What moving vertex i into vertex j gives.
+/// The result of contracting vertex i into vertex j.
 TriangleAdaptation::Contraction TriangleAdaptation::tryContraction(TriId t, int i, int j)
 {
   Contraction result;
@@ -476,8 +476,8 @@ bool TriangleAdaptation::contract(TriId t, int i)
   return this->contractAndMove(t, j, k) || this->contractAndMove(t, k, j);
 }
 
-/// Moves vertex i into vertex j, and then this one to where its edges are not too long, if there is
-/// such a place.
+/// Contracts vertex i into vertex j, and then moves this one to a position where its edges are not
+/// too long, if possible.
 bool TriangleAdaptation::contractAndMove(TriId t, int i, int j)
 {
   const VertexId w = this->Mesh.triangle(t).vertices[j];
@@ -508,7 +508,7 @@ bool TriangleAdaptation::contractAll()
 }
 
 //------------------------------------------------------------------------------
-/// Flips where anything has changed since the last time.
+/// Flips edges where anything has changed since the last call.
 bool TriangleAdaptation::flipAll()
 {
   this->Stack.clear();
@@ -621,7 +621,7 @@ bool TriangleAdaptation::move(VertexId v)
     {
       x = this->Input.surface.closest(x, this->Operations.patchOf(this->Around.front()));
     }
-    // With the former metric first: an inverted triangle is outside the mesh.
+    // Check with the former metric first: an inverted triangle would be outside the mesh.
     if (this->Input.planar && !std::isfinite(this->energyAround(v, x, before)))
     {
       continue;
@@ -660,7 +660,7 @@ bool TriangleAdaptation::moveAll()
       {
         return false;
       }
-      // Not again while nothing around has changed.
+      // Skip it while its surroundings have not changed.
       if (this->Mesh.used(v) && this->Operations.stamp(v) >= this->Still[v] && !this->move(v))
       {
         this->Still[v] = this->Operations.clock() + 1;

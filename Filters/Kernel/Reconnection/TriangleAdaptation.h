@@ -6,7 +6,7 @@
  *
  * In rounds, edges longer than sqrt(2) are split, the longest first; edges shorter than 1 / sqrt(2)
  * contracted, the shortest first; edges flipped where the smaller quality of their triangles
- * increases; and points moved. Lengths are those of edgeLength(), in the metrics of the ends.
+ * increases; and points moved. Lengths are computed by edgeLength(), in the metrics of the ends.
  */
 #ifndef tautline_TriangleAdaptation_h
 #define tautline_TriangleAdaptation_h
@@ -32,9 +32,9 @@ public:
   {
   }
 
-  /// What is done.
+  /// The operations to use.
   bool splits = true, contracts = true, flips = true, moves = true;
-  /// Called now and then; false: end.
+  /// Called periodically; returns false to stop.
   std::function<bool()> proceed;
 
   /**
@@ -42,16 +42,16 @@ public:
    * @return false if ended by `proceed`
    */
   bool runRound();
-  /// The part of the edges whose lengths are in between; of those that may be changed.
+  /// The fraction of the modifiable edges whose lengths are in between.
   double shareOfUnitEdges() const;
 
   ///@{ Single operations, with flips around. @return whether the mesh changed
   /// Splits edge i if none of the new edges is farther from length 1 than this one.
   bool split(TriId t, int i);
-  /// Contracts edge i, into the end that gives better triangles, if no new edge is too long and no
+  /// Contracts edge i into the end that gives better triangles, if no new edge is too long and no
   /// triangle becomes bad.
   bool contract(TriId t, int i);
-  /// Moves a point so that the triangles around are more like unit ones.
+  /// Moves a point so that the surrounding triangles become closer to unit triangles.
   bool move(VertexId v);
   ///@}
 
@@ -63,14 +63,14 @@ private:
     TriId triangle;
     int side;
   };
-  /// What a contraction gives.
+  /// The result of a contraction.
   struct Contraction
   {
-    double quality = -1; ///< the smallest one; negative: it is not possible
+    double quality = -1; ///< the smallest quality; negative: it is not possible
     double longest = 0;  ///< new edge
   };
 
-  /// No quality becomes smaller than this one, and than this part of the smallest before.
+  /// The lower bounds of qualities: absolute, and as a fraction of the smallest before.
   struct Bounds
   {
     double quality, part;
@@ -114,8 +114,8 @@ private:
   std::vector<Edge> Edges; ///< a heap
   std::vector<TriId> Around, Stack, Changed;
   std::vector<double> Before;
-  std::vector<std::uint32_t> Still; ///< per point: the clock when it was last found in its place
-  std::uint32_t Flipped = 0;        ///< the clock when all edges were as they should be
+  std::vector<std::uint32_t> Still; ///< per point: the clock when it was last found optimal
+  std::uint32_t Flipped = 0;        ///< the clock when all edges were last checked
   Index Steps = 0;
 };
 }

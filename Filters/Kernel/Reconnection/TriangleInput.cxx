@@ -11,7 +11,7 @@ namespace tautline
 {
 namespace
 {
-/// Of mesh, surface, workspace and result.
+/// The memory for mesh, surface, workspace and result.
 constexpr double BytesPerTriangle = 500.0;
 
 void requireTriangles(const Mesh& mesh)
@@ -25,13 +25,13 @@ void requireTriangles(const Mesh& mesh)
   if (mesh.higherOrderCells() > 0)
   {
     throw Error(std::to_string(mesh.higherOrderCells()) +
-      " cells of higher order: reconnection takes linear triangles. Run Curve Mesh with order 1 "
-      "first, and with the order of these cells on the result");
+      " cells of higher order: reconnection requires linear triangles. Run Curve Mesh with "
+      "order 1 first, and with the original order on the result");
   }
   if (others > 0)
   {
     throw Error(std::to_string(others) +
-      " cells are not triangles: reconnection takes triangles only; extract these, or run "
+      " cells are not triangles: reconnection requires triangles; extract them, or run "
       "Triangulate first");
   }
   if (mesh.nonFinitePoints() > 0)
@@ -43,7 +43,7 @@ void requireTriangles(const Mesh& mesh)
   if (view.numberOfCells > std::numeric_limits<std::int32_t>::max() / 8 ||
     view.numberOfPoints > std::numeric_limits<std::int32_t>::max() / 2)
   {
-    throw Error("reconnection takes at most 268 million triangles: cut the mesh into parts");
+    throw Error("reconnection supports at most 268 million triangles: split the mesh into parts");
   }
   std::vector<signed char> validity(view.numberOfCells);
   mesh.classifyCells(validity.data());
@@ -55,12 +55,12 @@ void requireTriangles(const Mesh& mesh)
     throw Error(std::to_string(bad) +
       (planar ? " inverted or degenerate triangles: run Untangle Mesh first (or reorient the "
                 "cells, if all are reversed)"
-              : " degenerate triangles that cannot be removed without a change of the surface: "
+              : " degenerate triangles that cannot be removed without changing the surface: "
                 "fix fewer points, or remesh there"));
   }
 }
 
-/// In the plane of a planar mesh, or as they are; then scaled.
+/// Converts points to the plane of a planar mesh, if any, and scales them.
 void convertPoints(const Mesh& mesh, TriangleInput& input)
 {
   const MeshView& view = mesh.view();
@@ -135,8 +135,9 @@ void checkTriangleOptions(const TriangleOptions& options)
   checkReconnectionOptions(options);
   if (options.boundary == BoundaryMotion::OnSurface)
   {
-    throw Error("motion within a distance of the boundary is for tetrahedra: let the boundary of "
-                "triangles slide in flat parts (their points stay on the surface in any case)");
+    throw Error("motion within a distance of the boundary is only supported for tetrahedra: "
+                "let the boundary of triangles slide in flat parts (their points always stay "
+                "on the surface)");
   }
 }
 
@@ -153,7 +154,7 @@ TriangleInput convertTriangles(const Mesh& mesh, const TriangleOptions& options)
   requireTriangles(mesh);
   const MeshView& view = mesh.view();
   requireMemory(BytesPerTriangle * static_cast<double>(view.numberOfCells),
-    "reconnection of this mesh", "take a smaller mesh");
+    "reconnection of this mesh", "use a smaller mesh");
   TriangleInput input;
   input.planar = mesh.dimension() != Dimension::Surface;
   convertPoints(mesh, input);
@@ -275,7 +276,7 @@ namespace
 {
 constexpr double RegularSine = 0.8660254037844386; // sin 60 degrees
 
-/// The smallest angle between two walls of triangle t at vertex k; 60 degrees or more: none.
+/// The smallest angle between two walls of triangle t at vertex k; 60 degrees or more means none.
 double wallAngle(const TriangleMesh& mesh, TriId t, int k)
 {
   if (!mesh.isWall(t, Next[k]) || !mesh.isWall(t, Previous[k]))
@@ -289,7 +290,7 @@ double wallAngle(const TriangleMesh& mesh, TriId t, int k)
 }
 
 /**
- * @brief The largest quality of a mesh at a corner of walls: its angle stays, or is divided.
+ * @brief The largest possible quality at a corner of walls: its angle is preserved or divided.
  * @param divides whether the walls may be divided, so that the triangle need not have both
  */
 double cornerBound(const TriangleMesh& mesh, TriId t, double angle, bool divides)
@@ -313,7 +314,7 @@ void findObstacles(const TriangleMesh& mesh, const std::vector<char>& fixedPoint
   const bool divides = options.boundary == BoundaryMotion::FlatParts && options.insert;
   std::vector<char> atBorder(mesh.pointSlots(), 0), atInterface(atBorder);
   double forced = 1.0, smallestCorner = Pi;
-  // Bounds of angles are none of mean ratios in a metric.
+  // Bounds on angles do not bound mean ratios in a metric.
   std::vector<double> bounds(mesh.slots(), options.adapt ? 1.0 : RegularSine);
   for (TriId t = 0; t < mesh.slots(); ++t)
   {
@@ -335,7 +336,7 @@ void findObstacles(const TriangleMesh& mesh, const std::vector<char>& fixedPoint
     forced = std::min(forced, bounds[t]);
   }
   result.forcedQuality = options.adapt ? 1.0 : std::min(forced, RegularSine);
-  // Of triangles with this angle that with two equal sides has the best mean ratio.
+  // The isosceles triangle has the best mean ratio of all triangles with this angle.
   const double angle = std::min(smallestCorner, Pi / 3.0);
   result.forcedInverseMeanRatio =
     (1.0 / std::tan(angle) + 2.0 * std::tan(0.5 * angle)) / std::sqrt(3.0);

@@ -9,7 +9,7 @@ namespace tautline
 {
 namespace
 {
-/// Triangles passed on the way to a point before the search goes on around.
+/// The number of triangles passed on the path to a point before the search continues around it.
 constexpr int MaxPassed = 10000;
 }
 
@@ -19,6 +19,8 @@ TrianglePlace closestInTriangle(const std::array<Vec3, 3>& p, const Vec3& x)
   const Vec3 n = cross(u, v);
   const double n2 = dot(n, n);
   TrianglePlace place;
+  // Barycentric coordinates of the projection onto the plane; if one is negative, the closest point
+  // is on an edge.
   place.weights[1] = dot(cross(w, v), n) / n2;
   place.weights[2] = dot(cross(u, w), n) / n2;
   place.weights[0] = 1.0 - place.weights[1] - place.weights[2];
@@ -54,6 +56,7 @@ TrianglePlace TriangleLocator::placeIn(TriId t, const Vec3& x) const
 
 TriId TriangleLocator::nearest(const Vec3& x, TriId start, TrianglePlace& best, int patience) const
 {
+  // Best-first search across neighbors; it ends after `patience` triangles without improvement.
   std::vector<Candidate>& queue = this->Queue;
   ++this->Search;
   this->Marks[start] = this->Search;
@@ -105,7 +108,7 @@ TriId TriangleLocator::walk(const Vec3& x, TriId start, TrianglePlace& place) co
       areas[i] = cross(p[v[Next[i]]] - x, p[v[Previous[i]]] - x)[2];
       sum += areas[i];
     }
-    // Through the edge that x is farthest behind, but not back.
+    // Leave through the edge that x is farthest beyond, but do not go back.
     int out = -1;
     for (int i = 0; i < 3; ++i)
     {

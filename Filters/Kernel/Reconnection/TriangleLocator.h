@@ -11,7 +11,7 @@
 
 namespace tautline
 {
-/// A place in a triangle: the weights of its corners, and the squared distance from the point.
+/// A position in a triangle: the weights of its corners, and the squared distance from the point.
 struct TrianglePlace
 {
   std::array<double, 3> weights = { 1, 0, 0 };
@@ -21,17 +21,17 @@ struct TrianglePlace
 /// The point of a triangle closest to x (C. Ericson, "Real-time collision detection", 5.1.5).
 TrianglePlace closestInTriangle(const std::array<Vec3, 3>& p, const Vec3& x);
 
-/// Keeps marks of the triangles that it visits: not for several threads.
+/// Keeps marks of visited triangles, so it is not thread-safe.
 class TriangleLocator
 {
 public:
-  /// Triangles visited in the search for a point.
+  /// The maximum number of triangles visited in the search for a point.
   static constexpr int MaxVisited = 300;
-  /// Triangles in a row that are not closer, after which the nearest one counts as found if the
-  /// search began near it.
+  /// The number of consecutive triangles that are not closer after which the nearest one is
+  /// accepted if the search began near it.
   static constexpr int Patience = 24;
 
-  /// @param mesh the input; both have to live as long as this
+  /// @param mesh the input; both must outlive this object
   TriangleLocator(const TriangleMesh& mesh, const TriangleInput& input)
     : Mesh(mesh)
     , Input(input)
@@ -40,14 +40,15 @@ public:
   }
 
   /**
-   * @brief Looks at triangles around `start`, of its region and patch, the closest ones first.
-   * @param patience ends after this many triangles in a row that are not closer, or were visited
+   * @brief Searches triangles around `start`, of its region and patch, closest first.
+   * @param patience ends after this many consecutive triangles that are not closer or already
+   *   visited
    */
   TriId nearest(const Vec3& x, TriId start, TrianglePlace& best, int patience = MaxVisited) const;
 
   /**
-   * @brief Walks from `start` to the triangle that contains x, in a plane also through walls; on a
-   * surface, and where a border is in the way, to the nearest one.
+   * @brief Walks from `start` to the triangle that contains x, in a plane, even through walls; on a
+   * surface, or if a border is in the way, to the nearest one.
    */
   TriId walk(const Vec3& x, TriId start, TrianglePlace& place) const;
 

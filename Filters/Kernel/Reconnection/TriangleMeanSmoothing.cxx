@@ -12,13 +12,13 @@ namespace
 {
 
 /// The sum of S / d over triangles, with the sum S of the squared edges and twice the area d, as a
-/// function of the vertex in its tangent plane: gradient and matrix of second derivatives.
+/// function of the vertex in its tangent plane, with gradient and Hessian.
 struct PlaneSum
 {
   double g[2] = { 0, 0 };
   double h[3] = { 0, 0, 0 }; ///< xx xy yy
 
-  /// @param a, b the corners seen from the vertex
+  /// @param a, b the corners relative to the vertex
   void add(const double (&a)[2], const double (&b)[2])
   {
     const double d = a[0] * b[1] - a[1] * b[0];
@@ -38,7 +38,8 @@ struct PlaneSum
     }
   }
 
-  /// Newton's step; along the gradient where that is no descent. @param count 1: along x only
+  /// Newton's step; along the gradient if that is not a descent direction. @param count 1: along x
+  /// only
   std::array<double, 2> step(int count) const
   {
     const double trace = this->h[0] + this->h[2];
@@ -58,8 +59,8 @@ struct PlaneSum
 };
 }
 
-/// The sum of the inverse mean ratios of the triangles `Around`; infinite where one is not accepted
-/// or has a smaller quality.
+/// The sum of the inverse mean ratios of the triangles `Around`; infinite if one is not accepted or
+/// has a smaller quality.
 double TriangleOperations::sumAround(double leastQuality) const
 {
   double sum = 0.0;

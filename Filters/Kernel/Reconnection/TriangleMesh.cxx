@@ -30,7 +30,7 @@ TriangleMesh::TriangleMesh(std::vector<Vec3> points, const std::vector<Corners>&
   this->findNonManifoldPoints();
 }
 
-/// Finds the neighbours by sorting the edges.
+/// Finds the neighbors by sorting the edges.
 void TriangleMesh::connect(const std::vector<std::array<Index, 2>>& walls)
 {
   struct Side
@@ -120,7 +120,7 @@ void TriangleMesh::star(VertexId v, std::vector<TriId>& triangles) const
   triangles.clear();
   const TriId start = this->PointTriangle[v];
   TriId t = start;
-  // Once around, the first one last; or at a border back to its end.
+  // Walk once around, ending at the first one, or back to the end of a border.
   while (t != NoNumber)
   {
     const std::int32_t n = this->Triangles[t].neighbors[Next[this->indexOf(t, v)]];
@@ -140,6 +140,7 @@ void TriangleMesh::star(VertexId v, std::vector<TriId>& triangles) const
     return;
   }
   triangles.clear();
+  // Border vertex: walk back to the first triangle, then collect the triangles from there.
   for (t = start;;)
   {
     const std::int32_t n = this->Triangles[t].neighbors[Previous[this->indexOf(t, v)]];
@@ -256,7 +257,7 @@ void TriangleMesh::compare(
   }
 }
 
-/// The triangle, to be changed: it is kept for undo().
+/// Returns the triangle for modification; its old state is kept for undo().
 Triangle& TriangleMesh::change(TriId t)
 {
   if (this->Open && t < this->OldSlots && this->TriangleSaved[t] != this->Transaction)
@@ -345,7 +346,7 @@ void TriangleMesh::removePoint(VertexId v)
   }
 }
 
-/// Makes the triangle that of its points.
+/// Links the points of the triangle to it.
 void TriangleMesh::attach(TriId t)
 {
   for (VertexId v : this->Triangles[t].vertices)
@@ -389,7 +390,7 @@ bool TriangleMesh::flip(TriId t, int i)
   const Triangle up = this->Triangles[t], down = this->Triangles[n];
   const VertexId a = up.vertices[i], b = up.vertices[Next[i]], c = up.vertices[Previous[i]];
   const VertexId d = down.vertices[j];
-  // A second edge a-d beside the first one would be on four triangles.
+  // A second edge a-d in addition to the first one would have four triangles.
   if (a == d || (this->isNonManifold(a) && this->isNonManifold(d)) || this->areNeighbors(a, d))
   {
     return false;
@@ -485,7 +486,7 @@ bool TriangleMesh::isOpen(VertexId v, const std::vector<TriId>& around) const
   return this->isBorder(around.front(), Previous[this->indexOf(around.front(), v)]);
 }
 
-/// Whether the triangles at v can become triangles of w: the link condition.
+/// Whether the triangles at v can be attached to w: the link condition.
 bool TriangleMesh::canContract(TriId t, int edge, VertexId v, VertexId w) const
 {
   const std::int32_t code = this->Triangles[t].neighbors[edge];
@@ -497,7 +498,7 @@ bool TriangleMesh::canContract(TriId t, int edge, VertexId v, VertexId w) const
   {
     return false;
   }
-  // Points next to both: only those opposite the edge.
+  // Points adjacent to both: only those opposite the edge.
   std::vector<VertexId> apexes = { this->Triangles[t].vertices[edge] };
   if (!border)
   {
@@ -521,7 +522,7 @@ bool TriangleMesh::canContract(TriId t, int edge, VertexId v, VertexId w) const
       }
     }
   }
-  // The last triangles of a tetrahedron, or a triangle that is all that its apex has.
+  // The last triangles of a tetrahedron, or a triangle that is the only one of its apex.
   if (!border && around.size() == least &&
     std::any_of(others.begin(), others.end(),
       [&](TriId s) { return has(s, apexes[0]) && has(s, apexes[1]) && !has(s, v); }))
@@ -533,7 +534,7 @@ bool TriangleMesh::canContract(TriId t, int edge, VertexId v, VertexId w) const
   return !isolates(t) && (border || !isolates(code >> 2));
 }
 
-/// Joins the neighbours beside the edge v-w of a triangle that vanishes.
+/// Joins the neighbors at the edges other than v-w of a vanishing triangle.
 void TriangleMesh::close(TriId t, VertexId v, VertexId w)
 {
   const Triangle old = this->Triangles[t];
@@ -580,7 +581,7 @@ bool TriangleMesh::contract(TriId t, int i, int j)
       this->setVertices(s, c);
     }
   }
-  // Points of the removed triangles may have had these as theirs.
+  // Points of the removed triangles may have been linked to them.
   for (TriId s : this->Others)
   {
     if (this->alive(s))
@@ -626,7 +627,7 @@ void TriangleMesh::setMetric(VertexId v, const PointMetric& metric)
   this->Metrics[v] = metric;
 }
 
-// Not inlined: with fused multiply-add, the last digit would depend on the place of the call.
+// Not inlined: with fused multiply-add, the last digit would depend on the call site.
 __attribute__((noinline)) double TriangleMesh::qualityOf(
   const std::array<Vec3, 3>& x, const std::array<const MetricTensor*, 3>& metrics) const
 {
@@ -681,13 +682,13 @@ std::string TriangleMesh::violationOf(TriId t) const
     const int j = code & 3;
     if (n >= this->slots() || !this->alive(n) || this->Triangles[n].neighbors[j] != 4 * t + i)
     {
-      return text("a neighbour does not know it");
+      return text("a neighbor is not linked back to it");
     }
     const Corners& other = this->Triangles[n].vertices;
     if (other[Next[j]] != triangle.vertices[Previous[i]] ||
       other[Previous[j]] != triangle.vertices[Next[i]])
     {
-      return text("a neighbour has another edge");
+      return text("a neighbor has another edge");
     }
     if (this->isWall(t, i) != this->isWall(n, j))
     {
@@ -695,7 +696,7 @@ std::string TriangleMesh::violationOf(TriId t) const
     }
     if (!this->isWall(t, i) && triangle.region != this->Triangles[n].region)
     {
-      return text("an edge between regions is no wall");
+      return text("an edge between regions is not a wall");
     }
   }
   return "";

@@ -4,9 +4,10 @@
  * @brief A triangle mesh whose connectivity changes.
  * Internal: not installed.
  *
- * Every triangle knows its three neighbours and every point one of its triangles, so that the
- * triangles around an edge are found in constant time, those around a point in their number. Edges
- * on the border, between regions and those given are walls: they are never swapped.
+ * Every triangle stores its three neighbors, and every point one of its triangles, so that the
+ * triangles around an edge are found in constant time, and the triangles around a point in time
+ * proportional to their number. Edges on the border, edges between regions and given edges are
+ * walls: they are never swapped.
  *
  *         v[0]
  *         /  \         edge i is opposite vertex i: it joins
@@ -14,9 +15,9 @@
  *       /______\
  *     v[1] e0  v[2]
  *
- * A transaction keeps what it changes, and can be undone: begin(), changes, commit() or undo().
- * Ids of triangles and points that are not involved stay; those that become free are used again
- * after the transaction, except the ids of the points of the input.
+ * A transaction records its changes and can be undone: begin(), changes, commit() or undo(). Ids of
+ * uninvolved triangles and points stay the same; freed ids are reused after the transaction, except
+ * the ids of input points.
  *
  * Points may have metrics, in which target lengths of edges are 1. Qualities are Euclidean, or the
  * mean ratios in the metrics (setMetrics()).
@@ -47,7 +48,7 @@ constexpr int Next[3] = { 1, 2, 0 }, Previous[3] = { 2, 0, 1 };
 struct Triangle
 {
   Corners vertices = { NoNumber, NoNumber, NoNumber }; ///< the first is -1: the slot is free
-  /// Per edge 4 times the neighbour plus its edge; -1 where there is none.
+  /// Per edge: 4 times the neighbor plus its edge; -1 if there is none.
   std::array<std::int32_t, 3> neighbors = { NoNumber, NoNumber, NoNumber };
   TriId origin = NoNumber; ///< a triangle of the input nearby, of the same region and patch
   std::int32_t region = 0;
@@ -71,7 +72,7 @@ public:
    * @param walls pairs of points: edges that are kept; Triangle::lines are their numbers
    * @param planar whether the points are in the xy plane, and the triangles have signs
    *
-   * Edges of three and more triangles, and of two with opposite orientations, are borders of each.
+   * Edges of three or more triangles, and of two with opposite orientations, are borders of each.
    */
   TriangleMesh(std::vector<Vec3> points, const std::vector<Corners>& cells,
     const std::vector<std::int32_t>& regions, const std::vector<std::array<Index, 2>>& walls,
@@ -90,15 +91,15 @@ public:
   TriId triangleOf(VertexId v) const { return this->PointTriangle[v]; }
   bool isWall(TriId t, int i) const { return (this->Triangles[t].walls >> i & 1) != 0; }
   bool isBorder(TriId t, int i) const { return this->Triangles[t].neighbors[i] == NoNumber; }
-  /// Edges that do not have one or two triangles of the same orientation.
+  /// The number of edges that do not have one triangle or two triangles of the same orientation.
   Index nonManifoldEdges() const { return this->NonManifoldEdges; }
-  /// Whether the triangles at a point are more than one fan. Such points are to be kept.
+  /// Whether the triangles at a point form more than one fan. Such points must be kept.
   bool isNonManifold(VertexId v) const
   {
     return v < static_cast<VertexId>(this->NonManifold.size()) && this->NonManifold[v] != 0;
   }
   double qualityOf(const Corners& v) const;
-  /// That of a triangle of any places, with metrics if qualities are measured in these.
+  /// The quality of a triangle with any positions, with metrics if qualities are measured in them.
   double qualityOf(
     const std::array<Vec3, 3>& x, const std::array<const MetricTensor*, 3>& metrics) const;
 
@@ -109,7 +110,7 @@ public:
   bool measuresInMetrics() const { return this->InMetrics; }
   bool hasMetrics() const { return !this->Metrics.empty(); }
   const PointMetric& metric(VertexId v) const { return this->Metrics[v]; }
-  /// Of a point without triangles, or where qualities are not measured in the metrics.
+  /// For a point without triangles, or if qualities are not measured in the metrics.
   void setMetric(VertexId v, const PointMetric& metric);
   /// The length of an edge in the metrics of its ends, see edgeLength().
   double length(VertexId v, VertexId w) const
@@ -117,15 +118,14 @@ public:
     return edgeLength(
       this->Points[w] - this->Points[v], this->Metrics[v].tensor, this->Metrics[w].tensor);
   }
-  ///@}
-  /// Which vertex of the triangle it is, 0 to 2.
+  /// @} The index of a vertex in the triangle, 0 to 2.
   int indexOf(TriId t, VertexId v) const
   {
     const Corners& c = this->Triangles[t].vertices;
     return c[0] == v ? 0 : (c[1] == v ? 1 : 2);
   }
 
-  /// The triangles at a point, in their order around it; at a border from one end to the other.
+  /// The triangles at a point, in cyclic order; at a border, from one end to the other.
   void star(VertexId v, std::vector<TriId>& triangles) const;
   bool areNeighbors(VertexId v, VertexId w) const;
 
@@ -134,22 +134,22 @@ public:
   void commit();
   void undo();
   bool inTransaction() const { return this->Open; }
-  /// The triangles that the transaction made or gave other corners or another shape, and the
-  /// qualities of those that they replace.
+  /// The triangles that the transaction created or modified, and the qualities of the triangles
+  /// they replace.
   void compare(std::vector<TriId>& triangles, std::vector<double>& qualitiesBefore) const;
   ///@}
 
-  ///@{ Changes. They return whether the connectivity allows them; nothing is changed if not.
+  /// @{ Changes. They return whether the connectivity allows them; otherwise nothing is changed.
   /// Replaces an edge by the other diagonal of its two triangles, which keep their ids.
   bool flip(TriId t, int i);
-  /// Divides an edge, also of a wall. @param metric null: none, or set later @return the new point
+  /// Divides an edge, including walls. @param metric null: none, or set later @return the new point
   VertexId splitEdge(TriId t, int i, const Vec3& x, const PointMetric* metric = nullptr);
-  /// Divides a triangle in three. @return the new point
+  /// Divides a triangle into three. @return the new point
   VertexId splitTriangle(TriId t, const Vec3& x);
-  /// Moves vertex i of a triangle into the vertex j, which removes the triangles at their edge.
+  /// Contracts vertex i of a triangle into vertex j, which removes the triangles at their edge.
   bool contract(TriId t, int i, int j);
   /// @param triangles its star
-  /// @param metric null: it keeps its own
+  /// @param metric null: it keeps its metric
   void movePoint(VertexId v, const Vec3& x, const std::vector<TriId>& triangles,
     const PointMetric* metric = nullptr);
   /// Sets Triangle::origin, to a triangle of the same region and patch.
@@ -196,15 +196,15 @@ private:
   std::vector<Vec3> Points;
   std::vector<TriId> PointTriangle;
   std::vector<PointMetric> Metrics; ///< per point, or empty
-  bool InMetrics = false;           ///< whether qualities are those in the metrics
+  bool InMetrics = false;           ///< whether qualities are measured in the metrics
   std::vector<char> NonManifold;
   std::vector<TriId> FreeTriangles;
   std::vector<VertexId> FreePoints;
   VertexId InputPoints = 0;
   Index Alive = 0, NonManifoldEdges = 0;
-  std::vector<TriId> Around, Others; ///< of contract(), kept to save allocations
+  std::vector<TriId> Around, Others; ///< work space of contract(), kept to save allocations
   mutable std::vector<TriId> Scratch;
-  // Of a transaction.
+  // The state of a transaction.
   bool Open = false;
   std::uint32_t Transaction = 0;
   std::vector<std::uint32_t> TriangleSaved, PointSaved;

@@ -24,7 +24,7 @@ MetricTensor planeLogarithm(const MetricTensor& m)
     [](double mean, double radius, const MetricTensor& t)
     {
       const double large = mean + radius;
-      // By the determinant: mean - radius would lose digits.
+      // Use the determinant: mean - radius would lose digits.
       const double small = (t[0] * t[1] - t[3] * t[3]) / large;
       const double a = std::log(large), b = std::log(small);
       return std::array<double, 2>{ 0.5 * (a + b), radius > 0.0 ? 0.5 * (a - b) / radius : 0.0 };

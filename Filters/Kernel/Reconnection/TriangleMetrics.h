@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TriangleMetrics.h
- * @brief The metric field of the input, at any place.
- * Internal: not installed.
+ * @brief The metric field of the input, at any position. Internal: not installed.
  */
 #ifndef tautline_TriangleMetrics_h
 #define tautline_TriangleMetrics_h
@@ -13,12 +12,12 @@ namespace tautline
 {
 /**
  * @brief Interpolates metrics in the triangles of the input: exp of the mean of the logarithms at
- * the corners, with the weights of the place. Not for several threads.
+ * the corners, with the weights of the position. Not thread-safe.
  */
 class TAUTLINE_RECONNECTIONKERNEL_EXPORT TriangleMetrics
 {
 public:
-  /// @param mesh the input; both have to live as long as this
+  /// @param mesh the input; both must outlive this object
   TriangleMetrics(const TriangleMesh& mesh, const TriangleInput& input);
 
   /// @param start a triangle of the input near x, on a surface of the same patch
@@ -29,7 +28,7 @@ public:
 private:
   const TriangleInput& Input;
   TriangleLocator Locator;
-  std::vector<MetricTensor> Logarithms; ///< of a planar mesh in its plane, other entries 0
+  std::vector<MetricTensor> Logarithms; ///< for a planar mesh, in its plane with other entries 0
 };
 }
 #endif

@@ -10,14 +10,15 @@ namespace tautline
 {
 namespace
 {
-/// Rounds of flips, and of flips and motions, after an insertion or a contraction.
+/// The numbers of rounds of flips, and of flips and motions, after an insertion or a contraction.
 constexpr int FlipRounds = 4, TidyRounds = 3;
 constexpr int TidySteps = 2;
-/// Triangles visited on the way to a place.
+/// The maximum number of triangles visited on the path to a position.
 constexpr int MaxWalk = 40;
-/// Below this, the length of an edge counts as the same in the metrics of both ends.
+/// Below this relative difference, the length of an edge is treated as equal in the metrics of both
+/// ends.
 constexpr double NearlyConstant = 1e-6;
-/// The mean ratio is at least so many times the quality.
+/// The mean ratio is at least this many times the quality.
 constexpr double LeastRatio = 1.1547005383792515; // 2 / sqrt(3)
 
 Vec3 normalAround(const TriangleMesh& mesh, const std::vector<TriId>& triangles)
@@ -62,7 +63,8 @@ void TriangleOperations::touch(const std::vector<TriId>& triangles)
   }
 }
 
-/// Compares the transaction's triangles with those before, in increasing order of quality.
+/// Compares the triangles of the transaction with the previous ones, in increasing order of
+/// quality.
 bool TriangleOperations::improves()
 {
   const Index size = this->Mesh.size();
@@ -99,7 +101,7 @@ double TriangleOperations::squaredLengthOf(VertexId v, VertexId w) const
     this->Mesh.metric(w).tensor);
 }
 
-/// Whether the edges of the operation's point are not too short (insertion) or too long
+/// Whether the edges of the point of the operation are not too short (insertion) or too long
 /// (contraction), after tidying up.
 bool TriangleOperations::keepsLengths()
 {
@@ -124,7 +126,8 @@ bool TriangleOperations::keepsLengths()
   return true;
 }
 
-/// What a new point may do; its metric is the mean of those around unless it has one.
+/// Sets the freedom of a new point and, unless it has a metric, the mean of the surrounding
+/// metrics.
 void TriangleOperations::setPoint(
   VertexId p, const PointFreedom& freedom, const std::vector<VertexId>& around)
 {
@@ -237,7 +240,8 @@ TriangleStar::Directions TriangleOperations::directionsAt(
   return directions;
 }
 
-/// Finds the place of a point for the largest smallest sine around; `Around` is its star.
+/// Finds the position of a point that maximizes the smallest surrounding sine; `Around` is its
+/// star.
 bool TriangleOperations::maximizeAround(VertexId v, int steps, Vec3& x, double& before)
 {
   this->Star.clear();
@@ -258,8 +262,8 @@ bool TriangleOperations::maximizeAround(VertexId v, int steps, Vec3& x, double& 
   return this->Star.maximize(x, steps, directions, project) > before + this->leastGain;
 }
 
-/// The same for the smallest mean ratio in the metrics, which stay as they are: in coordinates of
-/// the plane or tangent plane in which the metric of the point is the identity.
+/// The same for the smallest mean ratio in the metrics, which are fixed: in coordinates of the
+/// plane or tangent plane in which the metric of the point is the identity.
 bool TriangleOperations::maximizeInMetrics(VertexId v, int steps, Vec3& x, double& before)
 {
   const TriangleStar::Directions frame = this->directionsAt(v, this->Around);
@@ -358,7 +362,7 @@ bool TriangleOperations::smooth(VertexId v, int steps)
 }
 
 //------------------------------------------------------------------------------
-/// Flips edges and moves points of the transaction's triangles while that improves them.
+/// Flips edges and moves points of the triangles of the transaction while that improves them.
 void TriangleOperations::tidy()
 {
   std::vector<VertexId> points;
@@ -423,7 +427,7 @@ bool TriangleOperations::contract(TriId t, int i, int j)
       }
       this->Centre = w;
       this->IsInsertion = false;
-      // Inverted triangles cannot be repaired by flips that look at two triangles only.
+      // Inverted triangles cannot be repaired by flips that only consider two triangles.
       this->Mesh.star(w, this->Near);
       return std::all_of(this->Near.begin(), this->Near.end(),
         [this](TriId s) { return this->Mesh.quality(s) > 0.0; });
@@ -444,7 +448,7 @@ bool TriangleOperations::mayDivide(TriId t, int i) const
     return true;
   }
   const Corners& v = this->Mesh.triangle(t).vertices;
-  // Edges of three triangles have such ends; the others would not be divided.
+  // Edges of three triangles have such ends; not all of their triangles would be divided.
   return this->dividesWalls &&
     !(this->Mesh.isNonManifold(v[Next[i]]) && this->Mesh.isNonManifold(v[Previous[i]]));
 }
@@ -455,8 +459,8 @@ double TriangleOperations::middleOf(VertexId a, VertexId b) const
   {
     return 0.5;
   }
-  // The length changes from x to r x geometrically: the part s before the middle has r^s - 1 =
-  // (r - 1) / 2.
+  // The length varies geometrically from x to r x: the part s before the middle has r^s - 1 = (r -
+  // 1) / 2.
   const Vec3 e = this->Mesh.point(b) - this->Mesh.point(a);
   const double r = std::sqrt(
     squaredLength(e, this->Mesh.metric(b).tensor) / squaredLength(e, this->Mesh.metric(a).tensor));
@@ -489,7 +493,8 @@ VertexId TriangleOperations::divide(TriId t, int i)
   return p;
 }
 
-/// Inserts a point at a place of the plane, found from a triangle on; behind a wall, on the wall.
+/// Inserts a point at a position in the plane, located by walking from a triangle; if a wall is in
+/// the way, on the wall.
 bool TriangleOperations::insertAt(TriId t, const Vec3& x)
 {
   for (int step = 0; step < MaxWalk; ++step)
@@ -543,8 +548,8 @@ bool TriangleOperations::insert(TriId t)
   const auto shortest = static_cast<int>(std::min_element(lengths, lengths + 3) - lengths);
   if (this->Input.planar && !this->field)
   {
-    // Off-centre: the apex over the shortest edge that has the target angle (A. Ungor, 2004), or
-    // the centre of the circumcircle if that is nearer.
+    // Off-center: the apex over the shortest edge with the target angle (A. Ungor, 2004), or the
+    // circumcenter if that is closer.
     const Vec3 e = this->Mesh.point(v[Previous[shortest]]) - this->Mesh.point(v[Next[shortest]]);
     const Vec3 middle =
       0.5 * (this->Mesh.point(v[Previous[shortest]]) + this->Mesh.point(v[Next[shortest]]));
@@ -552,7 +557,8 @@ bool TriangleOperations::insert(TriId t)
     const double angle = std::asin(std::min(this->target, 0.99));
     const double sine = this->Mesh.quality(t);
     const double height = 0.5 / std::tan(0.5 * angle);
-    // Of the centre: R cos(A) for the angle A opposite the edge, its length 1 = 2 R sin(A).
+    // The height of the center: R cos(A) for the angle A opposite the edge, with length 1 = 2 R
+    // sin(A).
     const double centre = 0.5 * std::sqrt(std::max(1.0 - sine * sine, 0.0)) / sine;
     for (double h : { std::min(height, centre), centre })
     {

@@ -7,7 +7,7 @@
  *
  * Qualities of the affected triangles are compared in increasing order, before and after: the first
  * that differs decides. Operations return whether the mesh changed; changed() then lists the
- * triangles to look at again.
+ * triangles to revisit.
  */
 #ifndef tautline_TriangleOperations_h
 #define tautline_TriangleOperations_h
@@ -24,7 +24,7 @@ namespace tautline
 class TAUTLINE_RECONNECTIONKERNEL_EXPORT TriangleOperations
 {
 public:
-  /// How many were accepted.
+  /// The numbers of accepted operations.
   struct Counts
   {
     Index flips = 0, contractions = 0, insertions = 0, moves = 0;
@@ -36,46 +36,49 @@ public:
   {
   }
 
-  /// One per point slot of the mesh; those of new points are set here.
+  /// One per point slot of the mesh; freedoms of new points are set here.
   std::vector<PointFreedom> freedoms;
-  double leastMeanRatio = 0;               ///< no operation makes a triangle with a smaller one
+  double leastMeanRatio = 0;               ///< no operation creates a triangle with a smaller one
   Index smallestSize = 0, largestSize = 0; ///< bounds of the number of triangles
-  /// Where qualities are those in the metrics of the points: the metrics of all places. Null:
-  /// qualities are Euclidean, and new points have the mean of the metrics of those around.
+  /// If qualities are measured in metrics: the metric field. Null: qualities are Euclidean, and new
+  /// points get the mean of the surrounding metrics.
   const TriangleMetrics* field = nullptr;
-  double edgeFactor = 2.0;   ///< how much longer or shorter new edges may be in the metrics
+  double edgeFactor = 2.0;   ///< factor by which new edges may be longer or shorter in the metrics
   bool dividesWalls = false; ///< whether edges of walls may be divided
-  /// What insertions and contractions are followed by.
+  /// The operations that follow insertions and contractions.
   bool flips = true, moves = true;
-  double leastGain = 1e-4; ///< of the smallest quality, by a motion or a compound change
-  double target = 1;       ///< the quality that inserted points aim at
+  /// minimum gain of the smallest quality by a motion or a compound change
+  double leastGain = 1e-4;
+  double target = 1; ///< the target quality of inserted points
 
   /// Replaces edge i by the other diagonal of its two triangles.
   bool flip(TriId t, int i);
-  /// Moves a point to where the smallest quality of its star is largest.
+  /// Moves a point to maximize the smallest quality of its star.
   bool smooth(VertexId v, int steps);
-  /// Moves a point so that the sum of the inverse mean ratios around decreases, and no quality
-  /// falls below the least. @return the decrease
+  /// Moves a point to reduce the sum of the surrounding inverse mean ratios without any quality
+  /// falling below the minimum. @return the decrease
   double improveMean(VertexId v, double leastQuality);
   /**
    * @brief Moves points of curved parts of a closed surface along their normals, all by the same
-   * way, until it encloses a volume. Points go back where a quality falls below the least, or
-   * triangles are not accepted: then the volume may not be reached.
+   * distance, until it encloses the given volume. Points are restored where a quality falls below
+   * the minimum or triangles are not accepted: then the volume may not be reached.
    */
   void keepVolume(double volume, double leastQuality);
   /// The volume that a closed surface encloses; negative if its triangles face inwards.
   double enclosedVolume() const;
-  /// Moves vertex i into vertex j, then flips and moves around.
+  /// Contracts vertex i into vertex j, then flips edges and moves points around it.
   bool contract(TriId t, int i, int j);
-  /// Inserts a point at one of several places in or near the triangle, then flips and moves around.
+  /// Inserts a point at one of several positions in or near the triangle, then flips edges and
+  /// moves points around it.
   bool insert(TriId t);
 
-  ///@{ What changes by others need; they report these by touch().
-  /// Whether a triangle may be in the mesh: positive, above the floor, and on the surface.
+  /// @{ For changes by other classes, which report them with touch(). Whether a triangle is
+  /// acceptable: positive, above the floor, and on the surface.
   bool accepts(const Corners& v, TriId origin) const;
-  /// Whether edge i may be divided: of walls those with `dividesWalls`.
+  /// Whether edge i may be divided; walls only with `dividesWalls`.
   bool mayDivide(TriId t, int i) const;
-  /// The part of an edge before the point that halves its length in the metrics; 1/2 without.
+  /// The fraction of an edge before the point that halves its length in the metrics; 1/2 without
+  /// metrics.
   double middleOf(VertexId a, VertexId b) const;
   /// The patch of a triangle on a surface.
   int patchOf(TriId t) const
@@ -118,8 +121,7 @@ private:
   const TriangleInput& Input;
   Counts Count;
   TriangleStar Star;
-  /// Of the operation: the point whose edges are to keep to the target lengths, and from which
-  /// side.
+  /// The point of the operation whose edges must respect the target lengths, and from which side.
   VertexId Centre = NoNumber;
   bool IsInsertion = false;
   std::vector<TriId> Changed, Around, Near;

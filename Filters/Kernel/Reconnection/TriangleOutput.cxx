@@ -42,7 +42,8 @@ std::vector<Index> writePoints(const Mesh& mesh, const TriangleInput& input,
 void writeLines(const TriangleInput& input, const TriangleMesh& changed,
   const std::vector<Index>& numbers, ReconnectionResult& result)
 {
-  using Line = std::array<Index, 3>; // its ends, in increasing order, and what it is a part of
+  // its ends, in increasing order, and the edge of which it is a part
+  using Line = std::array<Index, 3>;
   std::vector<Line> lines;
   for (TriId t = 0; t < changed.slots(); ++t)
   {
@@ -86,7 +87,7 @@ void convertOutput(const Mesh& mesh, const TriangleInput& input, const TriangleM
   const std::vector<Index> numbers = writePoints(mesh, input, before, changed, result);
   const TriangleLocator locator(before, input);
   TrianglePlace place;
-  // Where qualities are measured in metrics, origins are up to date.
+  // If qualities are measured in metrics, origins are up to date.
   const int patience =
     changed.measuresInMetrics() ? TriangleLocator::Patience : TriangleLocator::MaxVisited;
   for (TriId t = 0; t < changed.slots(); ++t)

@@ -1,5 +1,4 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// Areas that triangles of the output share with those of the input.
+// SPDX-License-Identifier: BSD-3-Clause Areas of the intersections of output and input triangles.
 #include "Constants.h"
 #include "ReconnectionOutput.h"
 #include "TriangleInput.h"
@@ -28,7 +27,7 @@ double areaOf(const std::vector<Vec2>& polygon)
   return 0.5 * sum;
 }
 
-/// The area that two positive triangles share: one is cut along the edges of the other.
+/// The common area of two positive triangles: one is cut along the edges of the other.
 double sharedArea(const PlanarTriangle& x, const PlanarTriangle& y)
 {
   std::vector<Vec2> polygon(x.begin(), x.end()), rest;
@@ -55,7 +54,7 @@ double sharedArea(const PlanarTriangle& x, const PlanarTriangle& y)
   return areaOf(polygon);
 }
 
-/// The directions of a triangle's plane.
+/// The directions of the plane of a triangle.
 struct Frame
 {
   Vec3 origin, first, second, normal;
@@ -85,8 +84,8 @@ std::array<Vec3, 3> cornersOf(const std::vector<Vec3>& points, const Corners& v)
   return { points[v[0]], points[v[1]], points[v[2]] };
 }
 
-/// The triangles of the input, of its region and patch, that a triangle overlaps, found from
-/// `start` on; those of a surface as they appear along its normal.
+/// The triangles of the input, of its region and patch, that a triangle overlaps, searched from
+/// `start`; on a surface, in projection along its normal.
 OverlapRow overlapsOf(const std::array<Vec3, 3>& corners, TriId start, const TriangleMesh& before,
   const TriangleInput& input)
 {
@@ -100,7 +99,7 @@ OverlapRow overlapsOf(const std::array<Vec3, 3>& corners, TriId start, const Tri
   {
     const TriId t = queue[i];
     const PlanarTriangle other = frame.project(cornersOf(input.points, input.cells[t]));
-    // What is turned away is another part of the surface.
+    // A triangle facing away belongs to another part of the surface.
     const double area = areaOf({ other.begin(), other.end() }) > 0.0 ? sharedArea(own, other) : 0.0;
     if (area > least)
     {

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TriangleQuality.h
- * @brief The quality that reconnection maximizes, of one triangle.
- * Internal: not installed.
+ * @brief The quality of one triangle that reconnection maximizes. Internal: not installed.
  *
- * q is the sine of the smallest angle: with D twice the area and edges of lengths u >= v >= w,
- * q = D / (u v). It is sqrt(3) / 2 for the regular triangle, 0 for a degenerate one, and negative
- * for an inverted one of a planar mesh. The mean ratio 2 sqrt(3) D / (u^2 + v^2 + w^2) is at least
- * 2 q / sqrt(3), so that it needs no place in the quality.
+ * q is the sine of the smallest angle: with D twice the area and edges of lengths u >= v >= w, q =
+ * D / (u v). It is sqrt(3) / 2 for the regular triangle, 0 for a degenerate one, and negative for
+ * an inverted one of a planar mesh. The mean ratio 2 sqrt(3) D / (u^2 + v^2 + w^2) is at least 2 q
+ * / sqrt(3), so that it need not be part of the quality.
  *
- * In metrics it is the mean ratio of the triangle in the mean of the metrics of its corners.
+ * In metrics, it is the mean ratio of the triangle in the mean of the metrics of its corners.
  */
 #ifndef tautline_TriangleQuality_h
 #define tautline_TriangleQuality_h
@@ -22,12 +21,12 @@
 
 namespace tautline
 {
-/// 2 sqrt(3): makes the mean ratio of the regular triangle 1.
+/// 2 sqrt(3): normalizes the mean ratio of the regular triangle to 1.
 constexpr double TriangleMeanRatioFactor = 3.4641016151377544;
 
-/// Below this quality the sign of the area in a plane is that of the exact predicate.
+/// Below this quality, the sign of the area in a plane is determined by the exact predicate.
 constexpr double CertainTriangle = 1e-9;
-/// The same of the mean ratio in a metric, which may be much larger than the Euclidean one.
+/// The same for the mean ratio in a metric, which may be much larger than the Euclidean one.
 constexpr double CertainInMetric = 1e-6;
 
 struct TriangleMeasures
@@ -54,7 +53,7 @@ inline TriangleMeasures measureTriangle(const Vec3& a, const Vec3& b, const Vec3
   return m;
 }
 
-/// The quality; in a plane it is positive exactly if the area is, by the exact predicate.
+/// The quality; in a plane, it is positive if and only if the area is, by the exact predicate.
 inline double triangleQuality(const Vec3& a, const Vec3& b, const Vec3& c, bool planar)
 {
   const double q = measureTriangle(a, b, c, planar).sine;
@@ -70,7 +69,7 @@ inline double triangleQuality(const Vec3& a, const Vec3& b, const Vec3& c, bool 
 /// A symmetric tensor in the coordinates of two directions: xx, xy and yy.
 using PlaneTensor = std::array<double, 3>;
 
-/// The mean ratio in a metric of a triangle of a plane, with two edges u and v in their order.
+/// The mean ratio in a metric of a planar triangle, with two edges u and v in their order.
 inline double planeMeanRatio(const Vec2& u, const Vec2& v, const PlaneTensor& m)
 {
   const auto square = [&m](const Vec2& e)
@@ -81,8 +80,8 @@ inline double planeMeanRatio(const Vec2& u, const Vec2& v, const PlaneTensor& m)
   return sum > 0.0 ? TriangleMeanRatioFactor * area2 * std::sqrt(determinant) / sum : 0.0;
 }
 
-/// The mean ratio in the mean of the metrics of the corners; in a plane it is positive exactly if
-/// the area is, by the exact predicate.
+/// The mean ratio in the mean of the metrics of the corners; in a plane, it is positive if and only
+/// if the area is, by the exact predicate.
 inline double metricQuality(const Vec3& a, const Vec3& b, const Vec3& c, const MetricTensor& ma,
   const MetricTensor& mb, const MetricTensor& mc, bool planar)
 {

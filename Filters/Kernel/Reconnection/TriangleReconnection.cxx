@@ -16,25 +16,27 @@ namespace
 {
 /// Qualities of the first passes: the worst triangles first, also of the whole mesh.
 constexpr double FirstTriangleTargets[] = { 0.3, 0.5 };
-/// The last pass is repeated, at most so often, as long as the worst quality gains so much by it.
+/// The last pass is repeated, at most this many times, as long as the worst quality gains this
+/// much.
 constexpr int TrianglePasses = 4;
 constexpr double TrianglePassGain = 1e-3;
-/// What a motion has to gain at first, and in the last pass.
+/// The minimum gain of a motion at first, and in the last pass.
 constexpr double FirstGain = 1e-3, FineGain = 1e-4;
-/// Steps of a point, each time.
+/// The number of steps of a point, each time.
 constexpr int StepsOfPoint = 3;
-/// Attempts in a pass after adaptation, per triangle below its target: of flips and motions, and of
-/// all operations, which take a hundred times as long.
+/// The number of attempts in a pass after adaptation, per triangle below its target: of flips and
+/// motions, and of all operations, which take a hundred times as long.
 constexpr Index MetricMotions = 8, MetricAttempts = 2;
-/// Rounds of adaptation, which end when the share of edges of the right length grows by less.
+/// The maximum number of adaptation rounds, which end when the share of edges of the right length
+/// grows by less.
 constexpr int AdaptationRounds = 12;
 constexpr double LeastShareGain = 5e-4;
-/// How much of the progress adaptation takes.
+/// The share of adaptation in the progress.
 constexpr double AdaptationProgress = 0.8;
-/// Attempts between two checks of the clock.
+/// The number of attempts between two checks of the clock.
 constexpr Index AttemptsBetweenChecks = 32;
 
-/// One pass: which triangles are improved, and how.
+/// One pass: the triangles to improve, and the operations.
 struct TrianglePass
 {
   double target = 1;
@@ -69,7 +71,8 @@ ReconnectionRecord measure(const TriangleMesh& mesh, double target)
   return record;
 }
 
-/// First flips everywhere, then flips and motions for ever better triangles, then all the rest.
+/// First flips everywhere, then flips and motions for increasing targets, then all other
+/// operations.
 std::vector<TrianglePass> planPasses(const TriangleOptions& options)
 {
   const double target = targetQuality(options);
@@ -112,7 +115,7 @@ std::vector<TrianglePass> planPasses(const TriangleOptions& options)
 class TriangleRun
 {
 public:
-  /// @param field the metrics at all places, null without adaptation
+  /// @param field the metric field; null without adaptation
   TriangleRun(TriangleMesh& mesh, const TriangleInput& input, const TriangleMetrics* field,
     const TriangleOptions& options, ReconnectionResult& result)
     : Mesh(mesh)
@@ -147,10 +150,10 @@ private:
   ReconnectionResult& Result;
   TriangleOperations Operations;
   Queue Waiting;
-  std::vector<std::uint32_t> Tried; ///< clock at the last attempt in vain, per slot
+  std::vector<std::uint32_t> Tried; ///< clock at the last unsuccessful attempt, per slot
   ReconnectionProgress Progress;
   Index Attempts = 0;
-  double Volume = 0; ///< of the input, if it is to be kept
+  double Volume = 0; ///< of the input, if it must be preserved
 };
 
 bool TriangleRun::record(int pass, double fraction)
@@ -214,7 +217,7 @@ bool TriangleRun::improve(TriId t, const TrianglePass& pass)
   return changed;
 }
 
-/// Whether the triangle is still as it was when it was put into the queue, and worth a try.
+/// Whether the triangle is unchanged since it was put into the queue, and worth an attempt.
 bool TriangleRun::isWaiting(const Queue::Entry& entry)
 {
   const TriId t = entry.cell;
@@ -244,7 +247,7 @@ bool TriangleRun::runPass(const TrianglePass& pass)
       below += waits;
       return waits;
     });
-  // Where walls are much closer to each other than the target lengths, many triangles are below any
+  // If walls are much closer to each other than the target lengths, many triangles are below any
   // target.
   const Index attempts = pass.insert || pass.contract ? MetricAttempts : MetricMotions;
   Index budget = this->Field ? attempts * below : -1;
@@ -272,7 +275,7 @@ bool TriangleRun::runPass(const TrianglePass& pass)
   return true;
 }
 
-/// Moves all points in turn for the mean, the worst being held; false if stopped.
+/// Moves all points in turn to improve the mean without worsening the worst; false if stopped.
 bool TriangleRun::improveMean()
 {
   const ReconnectionRecord before = this->Result.history.back();
@@ -282,7 +285,7 @@ bool TriangleRun::improveMean()
   return this->record(before.pass + 1, 1.0) && complete;
 }
 
-/// Also of a run that was stopped: what it has changed so far has cost volume.
+/// Also applies to a stopped run, whose changes have already affected the volume.
 void TriangleRun::keepVolume()
 {
   const ReconnectionRecord& first = this->Result.history.front();
@@ -318,7 +321,8 @@ void TriangleRun::prepare(const std::vector<PointFreedom>& freedoms)
   }
 }
 
-/// Rounds of adaptation until the share of edges of the right length stays; false if stopped.
+/// Runs rounds of adaptation until the share of edges of the right length stops growing; false if
+/// stopped.
 bool TriangleRun::adapt()
 {
   TriangleAdaptation adaptation(this->Mesh, this->Input, this->Operations);
@@ -346,7 +350,7 @@ bool TriangleRun::adapt()
   return true;
 }
 
-/// Sets the origins of triangles to those that contain their centroids.
+/// Sets the origins of triangles to the input triangles that contain their centroids.
 void TriangleRun::findOrigins()
 {
   for (TriId t = 0; t < this->Mesh.slots(); ++t)
@@ -424,7 +428,7 @@ void checkEdges(const TriangleMesh& mesh)
   }
 }
 
-/// Throws Error for target lengths that ask for more triangles than there is memory for.
+/// Throws Error for target lengths that require more triangles than fit into memory.
 void requireFeasible(const TriangleInput& input)
 {
   constexpr double idealArea = 0.4330127018922193; // of edges of length 1: sqrt(3) / 4
@@ -463,11 +467,11 @@ void requireClosed(const TriangleMesh& mesh)
   }
   if (mesh.planar() || open > 0)
   {
-    throw Error("The volume can be kept of a closed surface only, and " +
+    throw Error("The volume can only be preserved for a closed surface, and " +
       (mesh.planar() ? std::string("this mesh is planar")
                      : std::to_string(open) +
             " edges of this one do not have one triangle on each side, in the same order") +
-      ": switch Keep Volume off, or close the surface first.");
+      ": turn Keep Volume off, or close the surface first.");
   }
 }
 }

@@ -9,13 +9,13 @@ namespace
 {
 /// Functions that are larger than the smallest by more than this do not limit a step.
 constexpr double Band = 0.3;
-/// The smallest of the functions, at most so many.
+/// The maximum number of functions, the smallest ones.
 constexpr std::size_t MaxFunctions = 24;
-/// Exchanges of weight between two functions, and where these end.
+/// The number of weight exchanges between two functions, and the gap at which they end.
 constexpr int Exchanges = 60;
 constexpr double Balanced = 1e-7;
-/// The weight of the square of the step times the square of the shortest edge: at first, and how
-/// it changes after a step that failed or did not.
+/// The weight of the square of the step times the square of the shortest edge: at first, and its
+/// factors after a failed and a successful step.
 constexpr double FirstStepWeight = 3.0, Harder = 4.0, Softer = 0.5;
 constexpr int Trials = 5;
 
@@ -56,7 +56,7 @@ void TriangleStar::addFunction(double value, const Vec3& gradient, const Directi
   this->Functions.push_back({ value, { dot(gradient, directions.first), along }, 0.0 });
 }
 
-/// The sines of the angles: D / (u v), D twice the area.
+/// The sines of the angles: D / (u v), where D is twice the area.
 void TriangleStar::linearizeSines(const Vec3& p, const Directions& directions)
 {
   const Vec3 up = directions.normal();
@@ -130,8 +130,8 @@ void TriangleStar::linearize(const Vec3& p, const Directions& directions)
   this->Functions.resize(count);
 }
 
-/// The step that maximizes the smallest linear function less weight / 2 times its square: by the
-/// dual problem, exchanging the weights of two functions at a time.
+/// The step that maximizes the smallest linear function minus weight / 2 times its square: solves
+/// the dual problem by exchanging the weights of two functions at a time.
 Vec2 TriangleStar::solve(double weight)
 {
   std::vector<Function>& f = this->Functions;
@@ -202,7 +202,7 @@ double TriangleStar::maximize(
       }
       double trialQuality = this->evaluate(trialPoint, up);
       moved = trialQuality > quality + this->leastGain;
-      if (project && moved) // what does not gain in the plane hardly does beside it
+      if (project && moved) // a step without gain in the plane hardly gains off it
       {
         trialPoint = project(trialPoint);
         trialQuality = this->evaluate(trialPoint, up);

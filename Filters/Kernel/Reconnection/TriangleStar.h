@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TriangleStar.h
- * @brief The position of one point that maximizes the smallest quality of the triangles around.
- * Internal: not installed.
+ * @brief The position of one point that maximizes the smallest quality of the surrounding
+ * triangles. Internal: not installed.
  */
 #ifndef tautline_TriangleStar_h
 #define tautline_TriangleStar_h
@@ -18,7 +18,7 @@ namespace tautline
 /**
  * @brief Maximizes the smallest sine of an angle of the triangles that join a point to given edges,
  * or their smallest mean ratio in given metrics, by proximal bundle steps: the values near the
- * smallest one are linearized, and the step maximizes the smallest of the linear functions less a
+ * smallest one are linearized, and the step maximizes the smallest of the linear functions minus a
  * multiple of its square.
  */
 class TAUTLINE_RECONNECTIONKERNEL_EXPORT TriangleStar
@@ -32,7 +32,7 @@ public:
     Vec3 normal() const { return cross(this->first, this->second); }
   };
 
-  /// A step has to gain this.
+  /// The minimum gain of a step.
   double leastGain = 1e-4;
 
   void clear()
@@ -42,22 +42,22 @@ public:
   }
   /// An edge, so that (point, a, b) is a triangle in its order.
   void addEdge(const Vec3& a, const Vec3& b) { this->Edges.push_back({ a, b }); }
-  /// The same in the xy plane, whose quality is the mean ratio in a metric instead. All edges of a
-  /// star have metrics, or none has.
+  /// The same in the xy plane, with the mean ratio in a metric as quality. Either all edges of a
+  /// star have metrics, or none.
   void addEdge(const Vec3& a, const Vec3& b, const PlaneTensor& metric)
   {
     this->Edges.push_back({ a, b });
     this->Metrics.push_back(metric);
   }
 
-  /// The smallest quality with the point at p; negative for triangles turned against the normal.
+  /// The smallest quality with the point at p; negative for triangles that oppose the normal.
   double evaluate(const Vec3& p, const Vec3& normal) const;
 
   /**
    * @brief Improves the position.
    * @param p start, and result; unchanged if no step improves the smallest quality
    * @param steps the largest number of accepted steps
-   * @param project brings a trial point to where it may be; may be null
+   * @param project projects a trial point onto the allowed set; may be null
    * @return the smallest quality
    */
   double maximize(Vec3& p, int steps, const Directions& directions,

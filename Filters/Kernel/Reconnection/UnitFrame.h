@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file UnitFrame.h
- * @brief Coordinates of a plane in which a metric is the identity.
- * Internal: not installed.
+ * @brief Plane coordinates in which a metric is the identity. Internal: not installed.
  */
 #ifndef tautline_UnitFrame_h
 #define tautline_UnitFrame_h
@@ -43,7 +42,7 @@ public:
     this->C = std::sqrt(std::max(m[2] - this->B * this->B, std::numeric_limits<double>::min()));
   }
 
-  /// The coordinates of a vector, of its part in the plane; z is 0.
+  /// The coordinates of the in-plane part of a vector; z is 0.
   Vec3 leave(const Vec3& e) const
   {
     const double x = dot(e, this->First), y = dot(e, this->Second);

@@ -15,15 +15,15 @@ namespace
 {
 /// The first guess of the energy is this much above the bound; then the gap is doubled.
 constexpr float FirstGap = 0.3f;
-/// Sums in another order may differ by this fraction.
+/// Sums in a different order may differ by this fraction.
 constexpr float Rounding = 1e-5f;
-/// Energies from here on stand for "none".
+/// Energies above this mean "none".
 constexpr float NoEnergy = 0.1f * Unreachable;
 
 /**
- * @brief Costs over where a chain of edges begins, p, and how many locations it advances, a.
+ * @brief Costs as a function of the start p of a chain of edges and its advance a in locations.
  *
- * A row per advance; rows hold the beginnings twice round, so that p + b needs no wrap.
+ * One row per advance; rows hold the start positions twice around, so that p + b needs no wrap.
  */
 struct ChainTable
 {
@@ -57,7 +57,7 @@ struct ChainTable
     }
     this->least = *std::min_element(this->minima.begin(), this->minima.end());
   }
-  /// The advances for which the rest may cost up to `rest`; in the order first, last.
+  /// The first and last advance for which the rest may cost up to `rest`.
   std::pair<Index, Index> affordable(float rest) const
   {
     Index first = this->low, last = this->high;
@@ -71,7 +71,7 @@ struct ChainTable
     }
     return { first, last };
   }
-  /// Copies the first round of a row to the rest of it.
+  /// Copies the first round of a row to the rest of the row.
   void wrap(Index a)
   {
     float* r = this->row(a);
@@ -122,7 +122,7 @@ void leastSums(const float* a, Index strideA, const float* b, Index strideB, Ind
   }
 }
 
-/// Minimises over the placements of one polygon on one outline.
+/// Minimizes over the placements of one polygon on one outline.
 class OutlineSearch
 {
 public:
@@ -140,8 +140,8 @@ public:
     {
       this->Edges.push_back(this->edgeCosts(v));
     }
-    // A chain is the part of the polygon that a diagonal cuts off, or an edge: its number is that
-    // of the step that completes it, or -1 - the edge's.
+    // A chain is the part of the polygon that a diagonal cuts off, or an edge: its number is the
+    // step that completes it, or -1 - edge.
     std::map<std::pair<Index, Index>, Index> chains;
     for (Index v = 0; v < this->Vertices; ++v)
     {
@@ -180,7 +180,7 @@ public:
     {
       return limit;
     }
-    // Placements up to a guess are all considered: if one is found, the best is.
+    // All placements up to a guess are considered: if any is found, the best one is.
     for (float gap = FirstGap * bound + Rounding;; gap *= 2.0f)
     {
       const float guess = std::min(bound + gap, limit);
@@ -200,7 +200,7 @@ private:
     Index k, i, j;      ///< the triangle; its chain runs from j over k to i
     Index left, right;  ///< the chains from j to k and from k to i
     ChainTable inside;  ///< least cost of the chain without triangles' terms
-    ChainTable outside; ///< the same of all the rest
+    ChainTable outside; ///< the same for the rest of the polygon
   };
 
   const ChainTable& inside(Index chain) const
@@ -208,7 +208,7 @@ private:
     return chain < 0 ? this->Edges[-1 - chain] : this->Steps[chain].inside;
   }
 
-  /// Ordering and descriptors of one edge.
+  /// The ordering and descriptor costs of one edge.
   ChainTable edgeCosts(Index v) const
   {
     const double expected = this->Source.advance[v];
@@ -220,7 +220,7 @@ private:
     ChainTable table(std::min(low, most), high, this->Count, this->Memory);
     const Index fine = static_cast<Index>(this->Target.descriptors.size()) / OutlineChannels;
     const Index perLocation = fine / this->Count;
-    // Differences of descriptors of each sample of the edge and each place.
+    // The differences between the descriptors of each edge sample and each location.
     std::vector<float> differences(static_cast<std::size_t>(DescriptorSamples * 2 * fine), 0.0f);
     for (Index g = 0; g < DescriptorSamples; ++g)
     {
@@ -235,7 +235,7 @@ private:
           sums[x] += std::abs(a[k] - b[x]);
         }
       }
-      std::copy_n(sums, fine, sums + fine); // twice round
+      std::copy_n(sums, fine, sums + fine); // twice around
     }
     const float weight = static_cast<float>(this->Options.descriptor * expected /
       static_cast<double>(this->Count) * static_cast<double>(this->Vertices) / DescriptorSamples);
@@ -269,7 +269,7 @@ private:
       const Index first = std::max(left.low, a - right.high);
       const Index last = std::min(left.high, a - right.low);
       const Index count = last - first + 1;
-      // Along with b, the right part advances less and begins later.
+      // As b grows, the right part advances less and begins later.
       leastSums(left.row(first), left.stride, right.row(a - first) + first, 1 - right.stride, count,
         this->Count, out.row(a));
       this->Statistics.additions += count * this->Count / FloatWidth;
@@ -277,7 +277,7 @@ private:
     }
   }
 
-  /// Least costs of all chains without the triangles' terms, and of the whole polygon.
+  /// The least costs, without the triangle terms, of all chains and of the whole polygon.
   float boundInside()
   {
     for (Step& step : this->Steps)
@@ -301,7 +301,7 @@ private:
     return bound;
   }
 
-  /// The cost of going the rest of the way round, for the beginnings and advances of `like`.
+  /// The cost of the rest of the outline, for the start positions and advances of `like`.
   ChainTable complement(const ChainTable& rest, const ChainTable& like) const
   {
     ChainTable result(like.low, like.high, this->Count, this->Memory);
@@ -317,7 +317,7 @@ private:
     return result;
   }
 
-  /// For each chain the least cost of what lies outside it, where the whole may cost up to a limit.
+  /// For each chain, the least cost of its complement if the total may cost up to a limit.
   void boundOutside(float limit)
   {
     Step& last = this->Steps.back();
@@ -331,7 +331,8 @@ private:
     for (std::size_t s = this->Steps.size(); s-- > 0;)
     {
       const Step& step = this->Steps[s];
-      // Outside the left part are the right one and what is outside both, and vice versa.
+      // The complement of the left part consists of the right part and the complement of both, and
+      // vice versa.
       if (step.left >= 0)
       {
         this->outsidePart(step.left, step.right, step.outside, limit, true);
@@ -343,8 +344,8 @@ private:
     }
   }
 
-  /// out(a, p) = min over b of other(b, p + a) + whole(a + b, p) if the part comes first, else of
-  /// other(b, p - b) + whole(a + b, p - b).
+  /// out(a, p) = min over b of other(b, p + a) + whole(a + b, p) if the part comes first, otherwise
+  /// of other(b, p - b) + whole(a + b, p - b).
   void outsidePart(
     Index partChain, Index otherChain, const ChainTable& whole, float limit, bool partFirst)
   {
@@ -376,7 +377,7 @@ private:
   float minimum(float limit)
   {
     std::vector<ChainTable> costs;
-    costs.reserve(this->Steps.size()); // no table moves
+    costs.reserve(this->Steps.size()); // so that tables are not moved
     const auto table = [&](Index chain) -> const ChainTable&
     { return chain < 0 ? this->Edges[-1 - chain] : costs[chain]; };
     for (const Step& step : this->Steps)
@@ -401,7 +402,7 @@ private:
     return best;
   }
 
-  /// The costs of a chain with the triangle over it; false if none is left.
+  /// The costs of a chain with its triangle; false if no placement is left.
   bool addTriangle(
     const Step& step, const ChainTable& left, const ChainTable& right, float limit, ChainTable& out)
   {
@@ -424,7 +425,7 @@ private:
         {
           continue;
         }
-        // Vertex i goes to p + a, j to p, k to p + b.
+        // Vertex i is placed at p + a, j at p, k at p + b.
         const FloatPacket ix = loadFloats(x + p + a), iy = loadFloats(y + p + a);
         const FloatPacket dx = loadFloats(x + p) - ix, dy = loadFloats(y + p) - iy;
         const FloatPacket ij = loadFloats(this->distances(a) + p);
@@ -452,7 +453,7 @@ private:
     return any;
   }
 
-  /// Distances from each location to the one so much farther along.
+  /// The distances from each location to the one this far ahead.
   const float* distances(Index advance) const
   {
     return this->Target.distances.data() + advance * static_cast<Index>(this->Target.x.size());
@@ -513,7 +514,7 @@ OutlineMatch matchOutlines(const OutlineModel& source, const OutlineModel& targe
   float energy = all;
   if (options.mirrored)
   {
-    // The one with the lower bound first: its energy often rules out the other.
+    // Start with the lower bound: its energy often rules out the other.
     OutlineSearch mirror(source.mirror, target, options, memory, match);
     const bool first = mirror.bound() < upright.bound();
     energy = (first ? mirror : upright).run(all);

@@ -15,21 +15,21 @@ namespace tautline
 {
 namespace
 {
-/// Points of the smoothed outline, and how many times as many it is smoothed with.
+/// The number of points of the smoothed outline, and the oversampling for smoothing.
 constexpr Index CurvePoints = 400, Oversampling = 4;
-/// Half the chord that stands for the tangent, as a fraction of the outline.
+/// Half of the chord that approximates the tangent, as a fraction of the outline.
 constexpr double TangentReach = 0.01;
 /// Points that are averaged for one height.
 constexpr int HeightSamples = 5;
-/// Differences of discs are as large on average as those of heights with this factor.
+/// With this factor, differences of disks are on average as large as differences of heights.
 constexpr double RegionScale = 0.6;
 /// Locations have descriptors in steps of one half.
 constexpr Index DescriptorsPerLocation = 2;
 constexpr int SignatureQuantiles = 8;
-/// Where the smoothed outline meets itself, it is smoothed less and has up to so many points.
+/// If the smoothed outline intersects itself, it is smoothed less and has up to this many points.
 constexpr Index MostCurvePoints = 6400;
 constexpr double SmoothingReduction = 0.25;
-/// A polygon has at most 2 vertices on 3 locations, so that there is a choice of places.
+/// A polygon has at most 2 vertices per 3 locations, so that there is a choice of placements.
 constexpr std::array<Index, 2> VerticesPerLocations = { 2, 3 };
 
 double fraction(double s)
@@ -88,7 +88,7 @@ Curve makeCurve(const Silhouette& shape, double smoothing, Index count)
     smoothed(resampleOutline(shape.outline, n), smoothing * static_cast<double>(n));
   Curve curve;
   curve.centre = centreOfMass(points);
-  // The beginning does not depend on where the shape lies in the image.
+  // The start point does not depend on the position of the shape in the image.
   std::size_t first = 0;
   curve.length = 0.0;
   for (std::size_t i = 0; i < points.size(); ++i)
@@ -108,7 +108,7 @@ Curve makeCurve(const Silhouette& shape, double smoothing, Index count)
 
 using Heights = std::array<double, OutlineHeights>;
 
-/// The heights of the curve over its tangent at s.
+/// The heights of the curve above its tangent at s.
 Heights heightsAt(const Curve& curve, double s)
 {
   constexpr Index bins = OutlineHeights + 1;
@@ -128,7 +128,7 @@ Heights heightsAt(const Curve& curve, double s)
   return heights;
 }
 
-/// Makes the descriptors of one shape.
+/// Computes the descriptors of one shape.
 class Describer
 {
 public:
@@ -155,12 +155,12 @@ public:
       const double deviation = std::sqrt(std::max(0.0, square[k] - mean[k] * mean[k]));
       this->Complexity += deviation / std::max(this->Largest[k], 1e-12) / OutlineHeights;
     }
-    // The same for a mirror image, which runs through the heights backwards.
+    // The same for a mirror image, which reverses the heights.
     for (Index k = 0; k < OutlineHeights; ++k)
     {
       const Index other = OutlineHeights - 1 - k;
       this->Scale[k] = std::max({ this->Largest[k], this->Largest[other], 1e-12 });
-      // Heights far along the outline change most as parts move: they weigh less.
+      // Heights far along the outline change most when parts move, so their weight is smaller.
       this->Weight[k] = 1.0 / static_cast<double>(std::min(k, other) + 1);
       this->WeightSum += this->Weight[k];
     }
@@ -195,7 +195,7 @@ private:
   double WeightSum = 0.0, Complexity = 0.0;
 };
 
-/// Where a point that is on a curve lies along it, 0 to 1.
+/// The position of a point along its curve, 0 to 1.
 double arcOf(const Curve& curve, const Vec2& p)
 {
   double nearest = 1e300, arc = 0.0;
@@ -216,7 +216,7 @@ double arcOf(const Curve& curve, const Vec2& p)
   return arc;
 }
 
-/// The mirror image: vertices and edges backwards, heights of each descriptor, too.
+/// The mirror image: reverses vertices and edges, and the heights of each descriptor.
 OutlineModel::Polygon mirrorImage(const OutlineModel::Polygon& polygon)
 {
   ShapeSource source;
@@ -291,7 +291,7 @@ OutlinePolygon makePolygon(const Silhouette& shape, const OutlineOptions& option
     }
     catch (const Error&)
     {
-      // Smoothed or sampled so, the sides of a thin part meet.
+      // With this smoothing or sampling, the sides of a thin part meet.
       if (count >= MostCurvePoints)
       {
         throw;
@@ -300,11 +300,11 @@ OutlinePolygon makePolygon(const Silhouette& shape, const OutlineOptions& option
       smoothing *= SmoothingReduction;
     }
   }
-  // Thin parts and many corners need many vertices: fewer follow them less closely.
+  // Thin parts and many corners need many vertices: with fewer, the approximation is worse.
   const Index most = options.locations * VerticesPerLocations[0] / VerticesPerLocations[1];
   if (static_cast<Index>(result.points.size()) > most)
   {
-    if (1.0 / options.spacing > static_cast<double>(most)) // whatever the outline
+    if (1.0 / options.spacing > static_cast<double>(most)) // for any outline
     {
       const std::size_t n = result.points.size();
       throw Error("The polygon has " + std::to_string(n) + " vertices: " + std::to_string(2 * n) +
@@ -371,7 +371,7 @@ OutlineModel prepareOutline(const Silhouette& shape, const OutlineOptions& optio
   {
     describer.append(static_cast<double>(i) / static_cast<double>(fine), rows);
   }
-  // One number after the other, so that loops over the places are vectorised.
+  // Store one number after the other, so that loops over the locations are vectorized.
   for (Index k = 0; k < OutlineChannels; ++k)
   {
     for (Index i = 0; i < fine; ++i)
@@ -379,7 +379,7 @@ OutlineModel prepareOutline(const Silhouette& shape, const OutlineOptions& optio
       model.descriptors.push_back(rows[i * OutlineChannels + k]);
     }
   }
-  // Locations twice round, and a packet more: loops over them need not wrap.
+  // Store the locations twice around plus one packet, so that loops need not wrap.
   for (Index i = 0; i < 2 * options.locations + FloatWidth; ++i)
   {
     const Vec2 p =

@@ -10,7 +10,7 @@ namespace tautline
 {
 namespace
 {
-/// Radii of the discs of a descriptor, in units of d_max.
+/// Radii of the disks of a descriptor, in units of d_max.
 constexpr double DescriptorRadii[4] = { 0.12, 0.25, 0.45, 0.8 };
 }
 
@@ -18,7 +18,7 @@ constexpr double DescriptorRadii[4] = { 0.12, 0.25, 0.45, 0.8 };
 std::vector<Descriptor> describe(const Silhouette& shape, const std::vector<Vec2>& points)
 {
   const Index width = shape.width, height = shape.height;
-  // Sums along rows make a disc cost one subtraction per row.
+  // With sums along rows, a disk costs one subtraction per row.
   std::vector<float> sums(static_cast<std::size_t>((width + 1) * height), 0.0f);
   for (Index j = 0; j < height; ++j)
   {

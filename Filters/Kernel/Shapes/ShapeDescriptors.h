@@ -13,8 +13,8 @@
 
 namespace tautline
 {
-/// The fraction of the shape in four discs around a point, with radii of 0.12, 0.25, 0.45 and 0.8
-/// d_max; then the distance of the point from the centre of mass, in units of d_max.
+/// The fraction of the shape in four disks around a point, with radii of 0.12, 0.25, 0.45 and 0.8
+/// d_max; then the distance of the point from the center of mass, in units of d_max.
 using Descriptor = std::array<float, 5>;
 
 /// One descriptor per point; the points are in pixels.

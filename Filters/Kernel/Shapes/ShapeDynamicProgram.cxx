@@ -11,10 +11,10 @@ namespace tautline
 {
 namespace
 {
-/// Steps of fewer triangles are done by one thread.
+/// Steps with fewer triangles run on one thread.
 constexpr Index SmallStep = 100000;
 
-/// How the cost of a triangle is computed: one function for each set of terms.
+/// Selects the function for the cost of a triangle: one for each set of terms.
 template <class Action>
 void dispatch(const ShapeEnergy& energy, const Action& action)
 {
@@ -185,7 +185,7 @@ bool PlacementSolver::run()
     // Rounding must not exclude the best placement itself.
     this->StepLimit =
       static_cast<float>(this->Problem.limit - std::max(0.0, this->Floor) * (1.0 - 1e-5) + 1e-5);
-    // The own cost of vertex k counts once, on the edge from i.
+    // The cost of vertex k itself is added once, on the edge from i.
     const std::vector<float>& vertex = this->Problem.vertices[k];
     for (Index p = 0; p < step.fromI.rows && !vertex.empty(); ++p)
     {
@@ -195,7 +195,7 @@ bool PlacementSolver::run()
         step.fromI.row(p)[r] += vertex[r];
       }
     }
-    // Eliminates vertex k: the minimum cost for each pair of places of its parents.
+    // Eliminates vertex k: the minimum cost for each pair of locations of its parents.
     PairTable out(this->Problem.sets[i]->size(), this->Problem.sets[j]->size(), Unreachable);
     this->solveStep(number, step, out);
     if (!this->report(static_cast<double>(number + 1) / static_cast<double>(n)))
@@ -209,7 +209,7 @@ bool PlacementSolver::run()
       this->Pending[{ i, j }] = std::move(out);
       continue;
     }
-    // What is left is one edge: its own cost, or what lies beyond it, and its vertices' costs.
+    // One edge remains: its own cost or the cost beyond it, and the costs of its vertices.
     const PairTable last = this->take(i, j);
     const std::vector<float>&ui = this->Problem.vertices[i], &uj = this->Problem.vertices[j];
     for (Index p = 0; p < out.rows; ++p)
@@ -245,15 +245,15 @@ void PlacementSolver::solveStep(std::size_t number, const Step& step, PairTable&
 //------------------------------------------------------------------------------
 namespace
 {
-/// Finds the best place of vertex k for places p of i and q of j, by packets of places r.
+/// Finds the best location of vertex k for locations p of i and q of j, in packets of locations r.
 class RowSearch
 {
 public:
-  /// Of one thread.
+  /// Work space of one thread.
   struct Scratch
   {
     std::vector<float> best;     ///< minimum cost for each q
-    std::vector<Index> guess;    ///< packet of the best r for each q; where the next p starts
+    std::vector<Index> guess;    ///< packet of the best r for each q, with which the next p starts
     std::vector<Index> tried;    ///< packet tried first
     std::vector<BaseEdge> edges; ///< from p to each q
 
@@ -265,7 +265,7 @@ public:
     }
   };
 
-  /// @param limit placements above it are left out, if `bounds`
+  /// @param limit placements above it are skipped, if `bounds`
   RowSearch(const TriangleTerms& terms, const PairTable& fromI, const PairTable& fromJ, bool bounds,
     float limit)
     : Terms(terms)
@@ -316,7 +316,7 @@ public:
       edges.emplace_back(this->Terms, sj.x[q], sj.y[q], px, py, this->LengthIJ->row(p)[q]);
       best[q] = this->Limit;
     }
-    // The best of a packet of places r for vertex k, with q for vertex j.
+    // The best of a packet of locations r for vertex k, with q for vertex j.
     const auto visit = [&](Index q, Index row)
     {
       const Index r = row * FloatWidth;
@@ -332,7 +332,7 @@ public:
         scratch.guess[q] = row;
       }
     };
-    // The row where the last p found the best comes first; few of the others can beat it.
+    // Start with the row in which the last p found the best; few other rows can beat it.
     const float* rowsI = this->MinI.row(p);
     scratch.tried = scratch.guess;
     for (Index q : sj.used)
@@ -377,7 +377,8 @@ public:
 private:
   const TriangleTerms& Terms;
   const PairTable &FromI, &FromJ;
-  bool Bounds, Screen; ///< Screen: packets are ruled out by a cheap bound on the deformation
+  /// Screen: whether packets are ruled out by a cheap bound on the deformation
+  bool Bounds, Screen;
   float Limit, Inverse;
   const LocationSet *SetI = nullptr, *SetJ = nullptr, *SetK = nullptr;
   const PairTable *LengthIJ = nullptr, *LengthIK = nullptr, *LengthJK = nullptr;
@@ -417,20 +418,21 @@ void PlacementSolver::solveRows(std::size_t number, const Step& step, PairTable&
 namespace
 {
 /**
- * @brief The search for vertex k where i, j and k have the same grid of places.
+ * @brief The search for vertex k if i, j and k have the same grid of locations.
  *
- * For one offset q - p the cost of the triangle depends on r - p only: a slice of all of them is
- * made once and serves every p.
+ * For one offset q - p, the cost of the triangle only depends on r - p: one slice of costs is
+ * computed and used for every p.
  */
 class GridSearch
 {
 public:
-  /// Of one thread: the costs of one offset.
+  /// Per thread: the costs of one offset.
   struct Slice
   {
-    PairTable costs; ///< row r_y - p_y from 1 - rows on, column r_x - p_x from 1 - columns on
+    /// row r_y - p_y starting at 1 - rows, column r_x - p_x starting at 1 - columns
+    PairTable costs;
     std::vector<float> minima; ///< of its rows
-    std::vector<float> lower;  ///< bound from below for each row of the grid
+    std::vector<float> lower;  ///< lower bound for each row of the grid
 
     explicit Slice(const GridSearch& search)
       : costs(search.SliceRows, search.SliceWidth, 0.0f)
@@ -459,7 +461,7 @@ public:
   {
   }
 
-  /// Number of offsets q - p.
+  /// The number of offsets q - p.
   Index offsets() const { return (2 * this->Columns - 1) * this->SliceRows; }
 
   /// Fills the entries (p, q) of the table with this offset.
@@ -502,7 +504,7 @@ private:
       FloatPacket low = broadcast(Unreachable);
       for (Index c = 0; c < this->SliceWidth; c += FloatWidth)
       {
-        // The columns beyond the last one repeat it, for whole packets.
+        // Columns beyond the last one repeat it, to fill packets.
         FloatPacket x;
         for (int l = 0; l < FloatWidth; ++l)
         {
@@ -520,8 +522,8 @@ private:
     }
   }
 
-  /// The minimum cost over all r, at most the limit. The row that was best for the last p and q
-  /// comes first; a row is skipped if the sum of its three minima is no better than what is found.
+  /// The minimum cost over all r, at most the limit. Starts with the row that was best for the last
+  /// p and q; a row is skipped if the sum of its three minima is not better than the current best.
   float search(Index p, Index q, Index px, Index py, Slice& slice, Index& guess) const
   {
     const Index width = this->Width;

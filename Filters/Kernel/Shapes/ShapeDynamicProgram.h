@@ -14,7 +14,8 @@
 
 namespace tautline
 {
-/// A placement problem: the vertices' locations, and tables for what depends on one or two of them.
+/// A placement problem: the locations of the vertices, and tables of the costs that depend on one
+/// or two of them.
 struct PlacementProblem
 {
   const PolygonMesh* mesh = nullptr;
@@ -27,7 +28,7 @@ struct PlacementProblem
   /// Cost per vertex over the slots of its set; empty if there is none.
   std::vector<std::vector<float>> vertices;
   bool bounds = true;
-  /// An energy that some placement has; placements above it may be left out. Unreachable: none.
+  /// The energy of a known placement; placements above it may be skipped. Unreachable: none.
   float limit = Unreachable;
   int threads = 0;
   /// Called with the fraction done, 0 to 1; returns whether to continue. May be empty.
@@ -50,19 +51,19 @@ public:
   /// Least energies over the slots of the two last vertices.
   const PairTable& values() const { return this->Values; }
 
-  /// The slots of the best placement with the last two vertices at these slots.
+  /// The slots of the best placement for the given slots of the last two vertices.
   std::vector<Index> trace(Index p, Index q) const;
 
-  /// Memory the tables take, in bytes.
+  /// The memory of the tables, in bytes.
   static double memory(const PlacementProblem& problem);
 
 private:
-  /// One elimination: vertex k, whose parents i and j go to p and q.
+  /// One elimination: vertex k, whose parents i and j are placed at p and q.
   struct Step
   {
     EliminationStep elimination;
     PairTable fromI; ///< cost of the part beyond edge i k, over p and r, with the cost of vertex k
-    PairTable fromJ; ///< beyond edge j k, over q and r
+    PairTable fromJ; ///< the same beyond edge j k, over q and r
     TriangleTerms terms;
   };
   void solveStep(std::size_t number, const Step& step, PairTable& out);

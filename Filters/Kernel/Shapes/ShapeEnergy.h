@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ShapeEnergy.h
- * @brief The energy of one triangle of a shape match, for a packet of places of its last vertex.
- * triangleEnergy() in ShapeModel.h is the same in doubles
- * and by another route.
+ * @brief The energy of one triangle of a shape match, for a packet of locations of its last vertex.
+ * triangleEnergy() in ShapeModel.h computes the same in double precision and in a different way.
  * Internal: not installed.
  */
 #ifndef tautline_ShapeEnergy_h
@@ -14,15 +13,15 @@
 
 namespace tautline
 {
-/// A large energy that sums of stay finite with; no match has it.
+/// A large energy whose sums stay finite; no match has it.
 constexpr float Unreachable = 1e30f;
-/// What the energy of a triangle needs of the source: vertices i, j, k go to p, q, r.
+/// The source data for the energy of a triangle: vertices i, j, k are placed at p, q, r.
 struct TriangleTerms
 {
   float weights[3]; ///< of |q-p|^2, |r-p|^2, |r-q|^2 in the anisotropy times |det|
   float deformation;
   float distortion;
-  float logLength; ///< log of the source's sum of edge lengths, with the scale if it is signed
+  float logLength; ///< log of the sum of edge lengths of the source, including the scale if signed
   float logScale;  ///< |log delta|; 0 if the distortion is signed
   float longest;   ///< sum of edges beyond which the distortion grows, with a margin for rounding
   float rotation;
@@ -89,8 +88,8 @@ struct BaseEdge
 /**
  * @brief Whether, for some r of a packet, the deformation may leave the sum below a value.
  *
- * Without division, root or logarithm: a log(alpha / beta)^2 < value - parts is norm < size
- * cosh(sqrt(y)) with y = (value - parts) / a, at most MaxLog2. Never wrong where the answer is no.
+ * Uses no division, root or logarithm: a log(alpha / beta)^2 < value - parts is norm < size
+ * cosh(sqrt(y)) with y = (value - parts) / a, at most MaxLog2. A negative answer is always correct.
  * @param norm the anisotropy times the size
  * @param parts the other costs
  * @param value divided by a

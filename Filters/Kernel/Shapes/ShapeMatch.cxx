@@ -18,15 +18,16 @@ namespace tautline
 namespace
 {
 constexpr double MemoryLimit = 4.0 * 1024 * 1024 * 1024;
-/// Targets smaller than this need no first solution on fewer locations.
+/// Targets with fewer locations need no first solution on a subset.
 constexpr std::size_t SmallTarget = 30;
-/// A first solution on more locations than this can be stopped, too.
+/// A first solution on more locations than this can also be stopped.
 constexpr std::size_t LargeCoarse = 200;
-/// Coarse to fine: locations around a vertex, along each axis, and how often their distance is
-/// halved.
+/// Coarse to fine: the number of locations around a vertex along each axis, and of halvings of
+/// their distance.
 constexpr int RefineRadius = 3;
 constexpr int RefineLevels = 3;
-/// A first solution on a contour is improved by moves of so many locations either way, so often.
+/// A first solution on a contour is improved by moves of up to this many locations either way, in
+/// this many sweeps.
 constexpr Index LocalReach = 3;
 constexpr int LocalPasses = 2;
 
@@ -36,7 +37,7 @@ void check(const MatchOptions& options)
   const std::pair<double, const char*> numbers[] = { { e.lambda, "edge constant lambda" },
     { e.deformation, "deformation weight a" }, { e.distortion, "distortion weight b" },
     { e.rotation, "rotation weight" }, { e.descriptor, "descriptor weight" },
-    { e.ordering, "ordering weight" }, { options.centreTolerance, "centre tolerance" },
+    { e.ordering, "ordering weight" }, { options.centreTolerance, "center tolerance" },
     { options.timeLimit, "time limit" } };
   for (const auto& [value, name] : numbers)
   {
@@ -57,12 +58,12 @@ double orderingCost(double from, double to, double expected)
 {
   double advance = to - from;
   advance -= std::floor(advance);
-  // A step of length 0 counts as a hundredth of the expected one.
+  // A step of length 0 is treated as a hundredth of the expected one.
   return std::abs(std::log(std::max(advance, 0.01 * expected) / expected));
 }
 
-/// Costs of one boundary edge with the ordering term, over places on the contour.
-/// @param arc of the places
+/// Costs of one boundary edge with the ordering term, over locations on the contour.
+/// @param arc of the locations
 /// @param expected advance along the contour
 PairTable orderedEdges(
   const PairTable& edges, const std::vector<double>& arc, double expected, double weight)
@@ -112,7 +113,8 @@ public:
 
   ShapeMatch run()
   {
-    // A first solution over fewer locations bounds the energy and serves if the search is stopped.
+    // A first solution over fewer locations bounds the energy, and is the result if the search is
+    // stopped.
     const bool hasCoarse =
       this->Target.locations.points.size() >= SmallTarget && this->Target.coarse.points.size() >= 3;
     ShapeMatch first;
@@ -164,7 +166,7 @@ public:
     }
     if (this->Options.centreTolerance > 0.0 && !match.centreAccepted && problem.limit < Unreachable)
     {
-      // The next best solutions are needed, which the limit may have cut off.
+      // The next best solutions are needed, which the limit may have excluded.
       problem.limit = Unreachable;
       PlacementSolver solver(problem);
       if (!solver.run())
@@ -201,7 +203,7 @@ private:
       !this->Source.descriptors.empty();
   }
 
-  /// Cost of a vertex at each location, over the slots of a set of some of the locations.
+  /// The cost of a vertex at each location, over the slots of a subset of the locations.
   std::vector<float> vertexCosts(
     std::size_t vertex, const LocationSet& set, const std::vector<Index>& of) const
   {
@@ -293,7 +295,7 @@ private:
       for (std::size_t v = 0; v < n; ++v)
       {
         const std::size_t next = (v + 1) % n;
-        // The costs are those of the full problem.
+        // Use the costs of the full problem.
         PairTable table(sets[v].size(), sets[next].size(), Unreachable);
         for (std::size_t i = 0; i < of[v].size(); ++i)
         {
@@ -373,8 +375,7 @@ private:
     return points;
   }
 
-  /// The first solution, in the order of the energy, whose centre is near the target's centre of
-  /// mass.
+  /// The first solution, in order of energy, whose center is near the center of mass of the target.
   ShapeMatch choose(
     const PlacementProblem& problem, const PlacementSolver& solver, bool nextBest) const
   {
@@ -391,7 +392,7 @@ private:
     bool accepted = this->Options.centreTolerance == 0.0 || d <= tolerance;
     if (!accepted && nextBest)
     {
-      // The solutions over all places of the last two vertices, in order of their energies.
+      // The solutions over all locations of the last two vertices, in order of their energies.
       std::vector<Solution> solutions;
       for (Index p : si.used)
       {
@@ -491,7 +492,7 @@ private:
     }
   }
 
-  /// Locations around each vertex of a solution, finer and finer.
+  /// Refines a solution with increasingly fine locations around each vertex.
   ShapeMatch refine(ShapeMatch match)
   {
     Vec2 step = this->Target.gridStep;
@@ -505,7 +506,7 @@ private:
       tables.reserve(n);
       for (const Vec2& centre : match.points)
       {
-        std::vector<Vec2> around(1, centre); // first, so that ties stay
+        std::vector<Vec2> around(1, centre); // first, so that it wins ties
         for (int j = -RefineRadius; j <= RefineRadius; ++j)
         {
           for (int i = -RefineRadius; i <= RefineRadius; ++i)
@@ -553,7 +554,8 @@ private:
   {
     if (!haveMatch)
     {
-      // Nothing was found yet: the source itself, moved and scaled to the target's centre and size.
+      // Nothing was found yet: use the source itself, moved and scaled to the center and size of
+      // the target.
       std::vector<Vec2> points;
       for (const Vec2& p : this->Source.mesh.points)
       {
@@ -589,8 +591,8 @@ void checkPrepared(
   if (e.lambda != made.lambda || e.smoothing != made.smoothing ||
     e.directedEdges != made.directedEdges || (e.descriptor > 0.0 && made.descriptor == 0.0))
   {
-    throw Error("The target was prepared for another lambda, smoothing or kind of edges, or "
-                "without descriptors.");
+    throw Error("The target was prepared with a different lambda, smoothing or kind of edges, "
+                "or without descriptors.");
   }
 }
 }
@@ -649,7 +651,7 @@ ShapeMatch matchShape(
         match.scale = factor;
         if (mirror)
         {
-          // Back to the order of the source's vertices and triangles.
+          // Restore the order of the source vertices and triangles.
           std::reverse(match.points.begin(), match.points.end());
         }
         const bool better = !found ||

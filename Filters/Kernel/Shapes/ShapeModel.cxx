@@ -67,7 +67,7 @@ ShapeSource makeShapeSource(const Silhouette& shape, double spacing)
   source.maxDistance = shape.maxDistance;
   source.perimeter = shape.perimeter;
   source.descriptors = describe(shape, source.mesh.points);
-  // Where the vertices lie along the outline: they are in its order.
+  // Find the positions of the vertices along the outline, in its order.
   double walked = 0.0;
   std::vector<double> along;
   for (std::size_t i = 0; i < shape.outline.size(); ++i)
@@ -97,9 +97,8 @@ ShapeSource makeShapeSource(std::vector<Vec2> polygon)
   }
   if (unitOfExtent(extent) != 1.0)
   {
-    throw Error(
-      "The polygon is of extreme size: shapes are matched between 5e-20 and 2e19. Scale it "
-      "first (filter Transform).");
+    throw Error("The polygon is of extreme size: the supported range is 5e-20 to 2e19. Scale it "
+                "first (filter Transform).");
   }
   ShapeSource source;
   source.mesh = triangulatePolygon(std::move(polygon));

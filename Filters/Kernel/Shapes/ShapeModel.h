@@ -17,9 +17,9 @@ namespace tautline
 /// The treatment of triangles that a placement mirrors.
 enum class Reflection
 {
-  Forbidden = 0, ///< they count as flat
-  Whole = 1,     ///< the better one of the shape and its mirror image; triangles as Forbidden
-  Free = 2       ///< they cost nothing by themselves, as in the dissertation's formula
+  Forbidden = 0, ///< they are treated as flat
+  Whole = 1,     ///< the better of the shape and its mirror image; triangles as in Forbidden
+  Free = 2       ///< they have no additional cost, as in the formula of the dissertation
 };
 
 /// The terms of the energy and their weights.
@@ -29,24 +29,25 @@ struct ShapeEnergy
   double deformation = 12; ///< a, at least 0
   double distortion = 3;   ///< b, at least 0; 0 gives Felzenszwalb's energy
   /// E_dis = |log(l_t / l_s) - log(d_t / d_s)|: a triangle must shrink where the shape shrinks. The
-  /// dissertation's form, the default, compares how much lengths change, not whether they grow.
+  /// default, the form of the dissertation, only compares the magnitude of length changes, not
+  /// their sign.
   bool signedDistortion = false;
-  /// Standard deviation of the Gaussian the target is smoothed with, in pixels, above 0.
+  /// The standard deviation of the Gaussian that smooths the target, in pixels, above 0.
   double smoothing = 1.5;
-  /// The edge cost uses the gradient along the polygon's inner normal only: the dark side of an
-  /// edge must be outside. Not in the dissertation.
+  /// Whether the edge cost only uses the gradient along the inner normal of the polygon: the dark
+  /// side of an edge must be outside. Not in the dissertation.
   bool directedEdges = false;
-  /// Weight of 1 - cos(angle a triangle turns by); 0, the default: turning is free.
+  /// The weight of 1 - cos(rotation angle of a triangle); 0, the default: rotation is free.
   double rotation = 0.0;
   /// Weight per vertex of the squared difference between the descriptors of source and target: the
-  /// fraction of the shape in discs of four radii, and the distance from the centre of mass.
+  /// fraction of the shape in disks of four radii, and the distance from the center of mass.
   double descriptor = 0.0;
-  /// Weight per boundary edge of |log(length along the target's outline / expected)|, with the
-  /// outline run through in the polygon's direction. Contour locations only.
+  /// Weight per boundary edge of |log(length along the outline of the target / expected)|, with the
+  /// outline traversed in the direction of the polygon. Contour locations only.
   double ordering = 0.0;
   Reflection reflection = Reflection::Forbidden;
 
-  /// The dissertation's: a = 4 b, lambda = 0.1, b = 3.
+  /// The energy of the dissertation: a = 4 b, lambda = 0.1, b = 3.
   static ShapeEnergy dissertation() { return {}; }
   /// The special case b = 0.
   static ShapeEnergy felzenszwalb()
@@ -65,30 +66,30 @@ struct ShapeSource
   double maxDistance = 0; ///< d_max of the source
   double perimeter = 0;   ///< of the outline
   std::vector<double>
-    arc; ///< where each vertex lies along the outline, 0 to 1; empty if not computed
+    arc; ///< position of each vertex along the outline, 0 to 1; empty if not computed
   std::vector<std::array<float, 5>> descriptors; ///< per vertex; empty if not computed
 };
 
-/// The triangulated polygon of a silhouette. Throws Error on a spacing that is not above 0.
+/// The triangulated polygon of a silhouette. Throws Error for a spacing that is not above 0.
 TAUTLINE_SHAPESKERNEL_EXPORT ShapeSource makeShapeSource(const Silhouette& shape, double spacing);
 
-/// A polygon as the shape to match; centre and d_max are those of its area and vertices.
+/// A polygon as the shape to match; center and d_max are computed from its area and vertices.
 TAUTLINE_SHAPESKERNEL_EXPORT ShapeSource makeShapeSource(std::vector<Vec2> polygon);
 
 /**
- * @brief A source turned counter-clockwise, or mirrored at the y axis and then turned. A mirrored
- * polygon runs through its vertices backwards, so that it stays counter-clockwise.
+ * @brief A source rotated counterclockwise, or mirrored at the y axis and then rotated. A mirrored
+ * polygon has its vertices in reverse order, so that it stays counterclockwise.
  * @param angle in radians
  */
 TAUTLINE_SHAPESKERNEL_EXPORT ShapeSource transformSource(
   const ShapeSource& source, double angle, bool mirrored);
 
-/// Where vertices may go.
+/// The allowed locations of vertices.
 enum class Locations
 {
-  Grid = 0,     ///< the centres of columns x rows equal rectangles of the image
-  NearGrid = 1, ///< those of them within a grid step of the target's outline
-  Contour = 2   ///< points at equal distances along the target's outline
+  Grid = 0,     ///< the centers of columns x rows equal rectangles of the image
+  NearGrid = 1, ///< those within a grid step of the outline of the target
+  Contour = 2   ///< equidistant points along the outline of the target
 };
 
 /// The set of locations for the vertices of the source.
@@ -101,19 +102,19 @@ struct LocationOptions
   int threads = 0;    ///< 0: all cores. The result does not depend on it.
 };
 
-/// The target: an image, its outline, and the locations. Precomputed once, shared by any number of
-/// matches.
+/// The target: an image, its outline, and the locations. Precomputed once and shared by any number
+/// of matches.
 class TAUTLINE_SHAPESKERNEL_EXPORT ShapeTarget
 {
 public:
   /**
-   * Prepares a target. Edge costs are tables over pairs of locations, which depend on lambda,
-   * smoothing and directedEdges of the energy only; descriptors are made if it weights them.
-   * @param grey the image, if its grey values rather than the silhouette shall give the gradient;
-   * may be null
+   * Prepares a target. Edge costs are tables over pairs of locations, which only depend on lambda,
+   * smoothing and directedEdges of the energy; descriptors are computed if they have a weight.
+   * @param grey the image, to use the gradient of its gray values instead of the silhouette; may be
+   * null
    *
-   * Throws Error if there are less than 3 locations, their table would take more than 4
-   * GiB, or an option is out of range.
+   * Throws Error if there are fewer than 3 locations, their table would need more than 4 GiB, or an
+   * option is out of range.
    */
   ShapeTarget(const Silhouette& shape, const LocationOptions& locations,
     const ShapeEnergy& energy = {}, const ImageView* grey = nullptr);
@@ -124,7 +125,7 @@ public:
   const std::vector<Vec2>& locations() const;
   Vec2 centre() const;
   double maxDistance() const;
-  /// Mean of 1 / (lambda + |grad I|) from p to q, sampled about once a pixel.
+  /// The mean of 1 / (lambda + |grad I|) from p to q, sampled about once per pixel.
   double edgeCost(const Vec2& p, const Vec2& q) const;
 
   struct Data;
@@ -134,29 +135,32 @@ private:
   std::unique_ptr<Data> Private;
 };
 
-/// How to search.
+/// The search options.
 struct MatchOptions
 {
   ShapeEnergy energy;
-  /// Solutions whose centre is farther from the target's centre of mass than this times d_max are
-  /// passed over for the next best (dissertation equation 5.2). 0: the rule is off. The
-  /// dissertation's is 1/3.
+  /// Solutions whose center is farther from the center of mass of the target than this times d_max
+  /// are skipped in favor of the next best (dissertation equation 5.2). 0: the rule is off. The
+  /// dissertation uses 1/3.
   double centreTolerance = 1.0 / 3.0;
-  /// Maximum number of solutions to try for the rule; then the one with the minimum distance is
-  /// taken.
+  /// The maximum number of solutions to try for the rule; then the one with the minimum distance is
+  /// used.
   Index maxSolutions = 1000;
-  /// Solves on a third of the locations first, then around that solution only; fast, not exact.
+  /// Whether to solve on a third of the locations first, then only around that solution; fast, not
+  /// exact.
   bool coarseToFine = false;
-  /// Bounds that skip placements which cannot be the best. The result is the same without.
+  /// Whether to use bounds that skip placements that cannot be the best. The result is the same
+  /// without them.
   bool bounds = true;
-  /// Sources turned by multiples of 360 / rotations degrees are tried; makes sense with
-  /// energy.rotation.
+  /// The number of rotations of the source, by multiples of 360 / rotations degrees, that are
+  /// tried; useful with energy.rotation.
   Index rotations = 1;
-  /// Target sizes tried, an odd number: delta times 2^(k/2), k = -(n-1)/2 ... (n-1)/2; for images
-  /// that show more than the shape, where d_max is no measure of its size.
+  /// The number of target sizes tried, odd: delta times 2^(k/2), k = -(n-1)/2 ... (n-1)/2; for
+  /// images that show more than the shape, where d_max does not measure its size.
   Index scales = 1;
-  int threads = 0;      ///< 0: all cores. The result does not depend on it.
-  double timeLimit = 0; ///< seconds; 0: none. When it is over, the best so far is returned.
+  int threads = 0; ///< 0: all cores. The result does not depend on it.
+  /// seconds; 0: none. When it is reached, the best match so far is returned.
+  double timeLimit = 0;
   /// Called with the fraction done, 0 to 1; returns whether to continue. May be empty.
   std::function<bool(double)> progress;
 };
@@ -170,17 +174,17 @@ struct TriangleEnergy
   double rotation = 0;
 };
 
-/// Anisotropy (alpha / beta + beta / alpha) / 2 of a triangle that is flat, or inverted where that
-/// is forbidden. Its energy is finite, and larger than that of any useful triangle.
+/// The anisotropy (alpha / beta + beta / alpha) / 2 of a triangle that is flat, or inverted where
+/// that is forbidden. Its energy is finite, and larger than for any useful triangle.
 constexpr float FlatAnisotropy = 1e6f;
 /// The minimum area of a triangle that is not flat, as a fraction of the square of its perimeter.
 constexpr float FlatArea = 1e-7f;
-/// The minimum sum of edge lengths, in units of the target's size.
+/// The minimum sum of edge lengths, in units of the target size.
 constexpr float MinLength = 1e-6f;
 
 /**
- * @brief Deformation, distortion and rotation of a map of a triangle, in double, from its singular
- * values.
+ * @brief Deformation, distortion and rotation of a map of a triangle, in double precision, from its
+ * singular values.
  * @param delta d_max of the source over d_max of the target
  */
 TAUTLINE_SHAPESKERNEL_EXPORT TriangleEnergy triangleEnergy(const std::array<Vec2, 3>& source,
@@ -197,7 +201,7 @@ enum class MatchStop
 /// A placement of the source in the target, with its energy.
 struct ShapeMatch
 {
-  std::vector<Vec2> points; ///< of the source's vertices in the target
+  std::vector<Vec2> points; ///< positions of the source vertices in the target
   double energy = 0;        ///< E, all weighted terms
   double edge = 0;          ///< sum of E_edge
   double deformation = 0;   ///< sum of E_def
@@ -206,11 +210,11 @@ struct ShapeMatch
   double descriptor = 0;    ///< sum of squared differences
   double ordering = 0;      ///< sum of |log|
   std::vector<TriangleEnergy> triangles;
-  Index rank = 1;            ///< of the solution taken: 1 is the minimum energy
-  double centreDistance = 0; ///< D, from the mean of the points to the target's centre of mass
+  Index rank = 1;            ///< of the chosen solution: 1 is the minimum energy
+  double centreDistance = 0; ///< D, from the mean of the points to the center of mass of the target
   bool centreAccepted = true;
-  bool mirrored = false; ///< the source's mirror image was matched
-  double angle = 0;      ///< by which the source was turned, in degrees
+  bool mirrored = false; ///< whether the mirror image of the source was matched
+  double angle = 0;      ///< rotation angle of the source, in degrees
   double scale = 1;      ///< factor on the expected size
   bool exact = true;     ///< no placement on the locations has a lower energy (rank 1)
   MatchStop stop = MatchStop::Complete;

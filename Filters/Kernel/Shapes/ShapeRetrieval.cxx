@@ -46,7 +46,7 @@ std::vector<Index> rankShapes(const std::vector<double>& distances, Index count)
         others.push_back(target);
       }
     }
-    // By distance; shapes without one, negative, come last.
+    // Sort by distance; shapes without a distance (negative) come last.
     std::stable_sort(others.begin(), others.end(),
       [row](Index a, Index b)
       { return row[b] < 0.0 ? row[a] >= 0.0 : row[a] >= 0.0 && row[a] < row[b]; });
@@ -100,14 +100,15 @@ namespace
 {
 /// The energy of outlines that cannot be placed on each other.
 constexpr double FarApart = 1e6;
-/// Steps of diffusion, and the share of the identity that keeps each shape its own nearest.
+/// The number of diffusion steps, and the weight of the identity, which keeps each shape its own
+/// nearest.
 constexpr int DiffusionSteps = 10;
 constexpr double DiffusionIdentity = 1e-3;
 
-/// Seconds after which ranks ask whether one of them is to stop.
+/// Seconds after which ranks check whether one of them must stop.
 constexpr double RoundSeconds = 0.5;
 
-/// Compares each shape with each other one, on several threads and ranks.
+/// Compares all pairs of shapes on several threads and ranks.
 class Comparison
 {
 public:
@@ -125,7 +126,7 @@ public:
   {
     this->Match.threads = 1;
     this->Match.timeLimit = 0;
-    // The limit also ends a comparison that is under way.
+    // The limit also ends a running comparison.
     this->Match.progress = nullptr;
     if (options.match.timeLimit > 0.0)
     {
@@ -134,7 +135,7 @@ public:
     }
   }
 
-  /// Energies of all pairs, row by source; negative where the comparison was stopped before.
+  /// Energies of all pairs, row by source; negative if the comparison was stopped before.
   std::vector<double> run()
   {
     std::vector<double> energies(static_cast<std::size_t>(this->Count * this->Count), -1.0);
@@ -176,14 +177,14 @@ public:
 private:
   bool outlines() const { return this->Options.method == RetrievalMethod::Outline; }
 
-  /// What stops one rank stops all.
+  /// A stop on one rank stops all ranks.
   void shareStop()
   {
     this->Stop =
       static_cast<MatchStop>(this->Group.maximum(static_cast<Index>(static_cast<int>(this->Stop))));
   }
 
-  /// Of the pairs that are matched, every n-th on n ranks.
+  /// The pairs of this rank: every n-th matched pair on n ranks.
   std::vector<Index> ownPairs(const std::vector<char>& chosen) const
   {
     std::vector<Index> own;
@@ -244,7 +245,7 @@ private:
     }
   }
 
-  /// On several ranks for some time, else all that are left.
+  /// Matches pairs for some time on several ranks, otherwise all remaining pairs.
   void matchRound(const std::vector<Index>& left, Index all, std::vector<double>& energies)
   {
     const Stopwatch time;
@@ -266,8 +267,8 @@ private:
       });
   }
 
-  /// Leaves a shape unprepared once the time is over: that of the dissertation's setting takes a
-  /// third of a second.
+  /// Leaves a shape unprepared after the time limit: with the settings of the dissertation,
+  /// preparation takes a third of a second.
   void prepareInTime(Index s)
   {
     struct OutOfTime
@@ -303,7 +304,7 @@ private:
       std::make_unique<ShapeTarget>(this->Shapes[s], this->Options.locations, this->Match.energy);
   }
 
-  /// For each pair whether it is matched.
+  /// For each pair: whether it is matched.
   std::vector<char> shortlisted() const
   {
     const Index n = this->Count;
@@ -325,7 +326,7 @@ private:
       std::sort(others.begin(), others.end());
       for (Index k = 0; k < this->Options.shortlist && !all; ++k)
       {
-        // In both directions, so that the distance is symmetric.
+        // Match in both directions, so that the distance is symmetric.
         chosen[s * n + others[k].second] = chosen[others[k].second * n + s] = 1;
       }
     }
@@ -387,7 +388,7 @@ private:
   RankGroup& Group;
   const std::vector<Silhouette>& Shapes;
   const RetrievalOptions& Options;
-  MatchOptions Match; ///< of a single pair: on one thread, without limits
+  MatchOptions Match; ///< for a single pair: on one thread, without limits
   Index Count;
   Index Work; ///< items: the shapes and the pairs
   std::vector<ShapeSource> Sources;
@@ -423,7 +424,8 @@ std::vector<double> symmetrized(
 
 namespace
 {
-/// Energies of outlines, which are per vertex: both directions, in units of the complexity.
+/// Combines the energies of outlines, which are per vertex: both directions, in units of the
+/// complexity.
 void combine(const std::vector<OutlineModel>& models, const RetrievalOptions& options,
   std::vector<double>& energies)
 {
@@ -469,7 +471,7 @@ std::vector<double> rerank(const std::vector<double>& distances, Index count, In
 {
   if (count < 2 || neighbours < 1 || static_cast<Index>(distances.size()) != count * count)
   {
-    throw Error("Diffusion needs the distances of 2 shapes or more, and at least 1 neighbour.");
+    throw Error("Diffusion needs the distances of 2 shapes or more, and at least 1 neighbor.");
   }
   using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   const Index k = std::min(neighbours, count - 1);
@@ -498,7 +500,7 @@ std::vector<double> rerank(const std::vector<double>& distances, Index count, In
     }
     affinity.row(s) /= affinity.row(s).sum();
   }
-  // Transitions to the shape itself and its nearest neighbours only.
+  // Transitions to the shape itself and its nearest neighbors only.
   std::vector<Eigen::Triplet<double>> entries;
   for (Index s = 0; s < count; ++s)
   {
@@ -547,7 +549,7 @@ void checkInput(const std::vector<Silhouette>& shapes, const std::vector<Index>&
   if (!(options.complexity > 0.0) || !std::isfinite(options.complexity) || options.shortlist < 0 ||
     options.neighbours < 0)
   {
-    throw Error("The complexity must be above 0, shortlist and neighbours at least 0.");
+    throw Error("The complexity must be above 0, shortlist and neighbors at least 0.");
   }
   // Distances in both directions, their sums, and the ranking.
   constexpr double bytesPerPair = 3 * sizeof(double) + sizeof(Index);
@@ -555,7 +557,7 @@ void checkInput(const std::vector<Silhouette>& shapes, const std::vector<Index>&
     "The table of all pairs of " + std::to_string(count) + " shapes", "use fewer shapes.");
 }
 
-/// A silhouette without what is per point or pixel, as it is sent.
+/// A silhouette without its data per point or pixel, as sent.
 struct SentShape
 {
   Index points, pixels, components, holes, width, height;
@@ -570,7 +572,7 @@ std::vector<Silhouette> shapesOfFirst(RankGroup& group, const std::vector<Silhou
 {
   std::vector<SentShape> sent;
   std::vector<Vec2> outlines;
-  std::vector<char> pixels; // of masks, which have 0 and 1
+  std::vector<char> pixels; // of masks, with values 0 and 1
   const bool isFirst = group.rank() == 0;
   for (std::size_t i = 0; isFirst && i < own.size(); ++i)
   {

@@ -16,7 +16,7 @@ namespace
 {
 /// A coarse set has every third location.
 constexpr Index CoarseStep = 3;
-/// Bytes that the table of edge costs may take.
+/// The maximum number of bytes of the table of edge costs.
 constexpr double TableLimit = 4.0 * 1024 * 1024 * 1024;
 
 void requireNonNegative(double value, const char* name)
@@ -43,7 +43,7 @@ std::vector<float> convolve(const std::vector<float>& image, Index width, Index 
       double sum = 0.0;
       for (Index k = -radius; k <= radius; ++k)
       {
-        // The image goes on with the value of its border.
+        // The image is extended with its border values.
         const Index from = std::clamp<Index>(at + k, 0, length - 1);
         sum += weights[static_cast<std::size_t>(k + radius)] * image[base + from * stride];
       }
@@ -76,7 +76,7 @@ double distanceToOutline(const std::vector<Vec2>& outline, const Vec2& p)
   return best;
 }
 
-/// The image whose gradient attracts edges: the mask of the silhouette, or the grey values scaled
+/// The image whose gradient attracts edges: the mask of the silhouette, or the gray values scaled
 /// to 0 outside and 1 inside.
 std::vector<float> imageOf(const Silhouette& shape, const ImageView* grey)
 {
@@ -86,7 +86,7 @@ std::vector<float> imageOf(const Silhouette& shape, const ImageView* grey)
   }
   if (grey->width != shape.width || grey->height != shape.height)
   {
-    throw Error("The grey image and the silhouette differ in size.");
+    throw Error("The gray image and the silhouette differ in size.");
   }
   std::vector<float> image(grey->values, grey->values + shape.width * shape.height);
   const auto [low, high] = std::minmax_element(image.begin(), image.end());
@@ -115,8 +115,8 @@ struct GaussianKernel
       sum += this->gauss.back();
       moment += this->slope.back() * static_cast<double>(k);
     }
-    // Scaled so that a straight edge, a unit step, has the gradient 1; without that it is
-    // 1 / (sigma sqrt(2 pi)) at the step. The step of a pixel image is half a pixel off.
+    // Scaled so that a straight edge (a unit step) has the gradient 1; unscaled, it is 1 / (sigma
+    // sqrt(2 pi)) at the step. The step of a pixel image is offset by half a pixel.
     const double step = sigma * std::sqrt(2.0 * Pi);
     for (std::size_t k = 0; k < this->gauss.size(); ++k)
     {
@@ -126,7 +126,7 @@ struct GaussianKernel
   }
 };
 
-/// The locations of a grid over the image; of NearGrid those within a cell of the outline.
+/// The locations of a grid over the image; for NearGrid, only those within a cell of the outline.
 LocationSet gridLocations(const Silhouette& shape, const LocationOptions& options, const Vec2& cell)
 {
   const LocationSet all = LocationSet::lattice(
@@ -146,7 +146,7 @@ LocationSet gridLocations(const Silhouette& shape, const LocationOptions& option
   }
   if (near.size() < 3)
   {
-    throw Error("Less than 3 grid locations are near the outline: use a finer grid.");
+    throw Error("Fewer than 3 grid locations are near the outline: use a finer grid.");
   }
   return LocationSet::list(near);
 }
@@ -163,7 +163,7 @@ LocationSet LocationSet::list(const std::vector<Vec2>& points)
   set.rowLength = FloatWidth;
   set.rows = (static_cast<Index>(points.size()) + FloatWidth - 1) / FloatWidth;
   set.points = points;
-  // Slots without a location repeat the last one, so that no arithmetic is done on nonsense.
+  // Slots without a location repeat the last one, so that arithmetic on them is valid.
   set.x.assign(static_cast<std::size_t>(set.size()), static_cast<float>(points.back()[0]));
   set.y.assign(static_cast<std::size_t>(set.size()), static_cast<float>(points.back()[1]));
   for (std::size_t i = 0; i < points.size(); ++i)
@@ -218,7 +218,7 @@ double ShapeTarget::Data::edgeCost(const Vec2& p, const Vec2& q) const
       sum += bilinear(this->cost, this->width, this->height, x, y);
       continue;
     }
-    // The polygon runs counter-clockwise: its inside is on the left.
+    // The polygon runs counterclockwise: its interior is on the left.
     const double along = length > 0.0
       ? (-dy * bilinear(this->gradientX, this->width, this->height, x, y) +
           dx * bilinear(this->gradientY, this->width, this->height, x, y)) /
@@ -253,7 +253,7 @@ PairTable ShapeTarget::Data::edgeTable(const LocationSet& a, const LocationSet& 
 }
 
 //------------------------------------------------------------------------------
-/// The gradient of the smoothed image and the cost of an edge point made of it.
+/// Computes the gradient of the smoothed image and the resulting cost of an edge point.
 void ShapeTarget::Data::computeCosts(const std::vector<float>& image)
 {
   const GaussianKernel kernel(this->energy.smoothing);

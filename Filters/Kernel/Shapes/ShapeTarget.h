@@ -13,16 +13,16 @@
 namespace tautline
 {
 /**
- * @brief Places for a vertex, in slots; rows of slots begin at multiples of the packet width.
+ * @brief Locations for a vertex, in slots; rows of slots begin at multiples of the packet width.
  *
- * On a grid a row is a row of the grid. Elsewhere a row is one packet.
+ * On a grid, a row is a row of the grid; otherwise, a row is one packet.
  */
 struct LocationSet
 {
   Index rows = 0;
   Index rowLength = 0; ///< slots per row, a multiple of the packet width
-  Index columns = 0;   ///< slots of a row that are used, on a grid
-  bool grid = false;   ///< all of a regular grid
+  Index columns = 0;   ///< number of used slots of a row, on a grid
+  bool grid = false;   ///< whether this is a whole regular grid
   Vec2 step = {};      ///< of the grid
   std::vector<float> x, y;
   std::vector<Index> used;  ///< slots with a location, ascending
@@ -52,7 +52,7 @@ struct PairTable
   const float* row(Index i) const { return this->values.data() + i * this->columns; }
 };
 
-/// What matches need of a target, computed once.
+/// The data of a target that matches need, computed once.
 struct ShapeTarget::Data
 {
   ShapeEnergy energy;
@@ -62,7 +62,7 @@ struct ShapeTarget::Data
   std::vector<float> gradientX; ///< for directed edges
   std::vector<float> gradientY;
   LocationSet locations;
-  LocationSet coarse; ///< every third of them
+  LocationSet coarse; ///< every third location
   PairTable edges;    ///< edge cost from slot to slot
   PairTable coarseEdges;
   std::vector<Descriptor> descriptors; ///< per location
@@ -76,7 +76,7 @@ struct ShapeTarget::Data
   void computeCosts(const std::vector<float>& image);
   void chooseLocations(const Silhouette& shape, const LocationOptions& options);
   void chooseCoarse();
-  /// Mean of the edge cost along the segment from p to q, in pixels.
+  /// The mean of the edge cost along the segment from p to q, in pixels.
   double edgeCost(const Vec2& p, const Vec2& q) const;
   /// The edge costs from each location of a to each one of b.
   PairTable edgeTable(const LocationSet& a, const LocationSet& b) const;

@@ -13,15 +13,15 @@ namespace tautline
 {
 namespace
 {
-/// The smallest distance of a crossing from a pixel's centre: crossings never coincide.
+/// The smallest distance of a crossing from a pixel center, so that crossings never coincide.
 constexpr double CrossingMargin = 1e-3;
-/// Points to choose vertices from, per spacing.
+/// The number of candidate points for vertices, per spacing.
 constexpr int PointsPerSpacing = 20;
-/// The spacing shrinks by this factor until the polygon is simple, at most so many times.
+/// The spacing is reduced by this factor until the polygon is simple, at most this many times.
 constexpr double SpacingReduction = 0.8;
 constexpr int SpacingAttempts = 40;
 
-/// Pixels with a frame of background around, so that every outline closes.
+/// Pixels surrounded by a frame of background, so that every outline closes.
 class Framed
 {
 public:
@@ -73,7 +73,7 @@ public:
         {
           for (Index i = -1; i <= 1; ++i)
           {
-            // The frame is background: a neighbour is never outside of the array.
+            // The frame is background: a neighbor is never outside the array.
             const std::size_t next = static_cast<std::size_t>(pixel + j * this->Width + i);
             if (!this->Labels[next] && this->inside(next, dark))
             {
@@ -87,7 +87,7 @@ public:
     return sizes;
   }
 
-  /// The closed lines between a component and the rest, the component on their left.
+  /// The closed lines between a component and the rest, with the component on their left.
   std::vector<std::vector<Vec2>> trace(Index label) const
   {
     // An edge between pixels has the number 2 pixel (to the right) or 2 pixel + 1 (upwards).
@@ -106,12 +106,12 @@ public:
           continue;
         }
         const Index pixel = static_cast<Index>(this->at(i, j));
-        // The square's edges, counter-clockwise from the lower one.
+        // The edges of the square, counterclockwise from the lower one.
         const Index edge[4] = { 2 * pixel, 2 * (pixel + 1) + 1, 2 * (pixel + this->Width),
           2 * pixel + 1 };
-        // Counter-clockwise around the square the line goes out where an edge leads from inside to
-        // outside, and came in where one leads from outside to inside. With both diagonals, the
-        // inside ones are connected: the line keeps close to each outside corner.
+        // Counterclockwise around the square, the line leaves at an edge from inside to outside,
+        // and enters at an edge from outside to inside. For diagonal corners, the inside ones are
+        // connected: the line stays close to each outside corner.
         for (int out = 0; out < 4; ++out)
         {
           if (!corner[out] || corner[(out + 1) % 4])
@@ -157,7 +157,7 @@ private:
     const std::size_t b = a + (up ? static_cast<std::size_t>(this->Width) : 1);
     const bool first = this->Labels[a] == label;
     const std::size_t inner = first ? a : b, outer = first ? b : a;
-    // Beyond the image the background is taken as far below the threshold as the shape is above.
+    // Beyond the image, the background is as far below the threshold as the shape is above it.
     const Index i = static_cast<Index>(a) % this->Width, j = static_cast<Index>(a) / this->Width;
     const bool frame =
       i == 0 || j == 0 || (up ? j + 2 : i + 2) == (up ? this->Height : this->Width);
@@ -205,7 +205,7 @@ bool isDark(const ImageView& image, double threshold, Foreground foreground)
   return 2 * bright > border;
 }
 
-/// Fills the holes of a component: what the outside does not reach is inside.
+/// Fills the holes of a component: pixels not reached from outside are inside.
 std::vector<float> fill(const std::vector<Index>& labels, Index label, Index width, Index height)
 {
   const Index framed = width + 2;
@@ -241,7 +241,8 @@ std::vector<float> fill(const std::vector<Index>& labels, Index label, Index wid
   return mask;
 }
 
-/// The vertices of the best closed polygon on points, by dynamic programming from each start.
+/// Chooses the vertices of the best closed polygon on points, by dynamic programming from each
+/// start.
 class VertexChoice
 {
 public:
@@ -277,7 +278,7 @@ public:
     const std::size_t n = this->Points.size();
     double least = std::numeric_limits<double>::infinity();
     std::vector<std::size_t> chosen;
-    // Among so many neighbouring points, one is a vertex of the best polygon.
+    // Among this many neighboring points, one is a vertex of the best polygon.
     for (std::size_t start = 0; start < std::min<std::size_t>(this->Most, n); ++start)
     {
       std::vector<double> sum(n + 1, std::numeric_limits<double>::infinity());
@@ -327,12 +328,12 @@ private:
   std::vector<double> Costs;
 };
 
-/// Vertices that a polygon to reduce may have: the time is quadratic in it.
+/// The maximum number of vertices of a polygon to reduce: the time is quadratic in it.
 constexpr Index MostReducible = 20000;
-/// The share of the vertices to remove that one round removes: one in so many.
+/// Each round removes one in this many of the vertices to remove.
 constexpr Index VerticesPerRound = 4;
 
-/// Twice the area of a triangle, positive if it runs counter-clockwise.
+/// Twice the area of a triangle, positive if it is counterclockwise.
 double doubledArea(const Vec2& a, const Vec2& b, const Vec2& c)
 {
   return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
@@ -348,7 +349,7 @@ bool isInside(const std::array<Vec2, 3>& triangle, const Vec2& p)
     left = left && side >= 0.0;
     right = right && side <= 0.0;
   }
-  // On the line of a triangle without an area: within its box.
+  // For a triangle without area: within its box on its line.
   const auto within = [&](int c)
   {
     const auto [low, high] = std::minmax({ triangle[0][c], triangle[1][c], triangle[2][c] });
@@ -382,7 +383,7 @@ Silhouette traceSilhouette(const ImageView& image, const SilhouetteOptions& opti
   }
   if (*low == *high)
   {
-    throw Error("The image has one value only, " + std::to_string(*low) +
+    throw Error("The image has only one value, " + std::to_string(*low) +
       ": there is no shape to separate from its surroundings.");
   }
   shape.dark = isDark(image, shape.threshold, options.foreground);
@@ -398,8 +399,8 @@ Silhouette traceSilhouette(const ImageView& image, const SilhouetteOptions& opti
   shape.width = image.width;
   shape.height = image.height;
   shape.components = static_cast<Index>(sizes.size());
-  // The largest component is the shape. Its line with the largest area is the outline; lines of
-  // negative area run around holes.
+  // The largest component is the shape. Its line with the largest area is the outline; lines with
+  // negative area surround holes.
   const Index label = std::max_element(sizes.begin(), sizes.end()) - sizes.begin() + 1;
   std::vector<std::vector<Vec2>> lines = framed.trace(label);
   for (std::vector<Vec2>& line : lines)
@@ -460,14 +461,14 @@ std::vector<Vec2> reducePolygon(std::vector<Vec2> polygon, Index most)
     const auto triangleAt = [&](std::size_t i) {
       return std::array<Vec2, 3>{ polygon[(i + n - 1) % n], polygon[i], polygon[(i + 1) % n] };
     };
-    std::vector<std::pair<double, std::size_t>> order; // the smallest triangles first
+    std::vector<std::pair<double, std::size_t>> order; // sorted by area, smallest triangles first
     for (std::size_t i = 0; i < n; ++i)
     {
       const std::array<Vec2, 3> triangle = triangleAt(i);
       order.emplace_back(std::abs(doubledArea(triangle[0], triangle[1], triangle[2])), i);
     }
     std::sort(order.begin(), order.end());
-    // A part of them in a round, since the triangles beside a vertex that is removed grow.
+    // Only a part of them per round, because the triangles next to a removed vertex grow.
     Index left = std::min<Index>(
       static_cast<Index>(n) - most, 1 + (static_cast<Index>(n) - most) / VerticesPerRound);
     std::vector<char> gone(n, 0), touched(n, 0);
@@ -513,7 +514,7 @@ std::vector<Vec2> approximateOutline(const std::vector<Vec2>& outline, double sp
   const double area = signedArea(outline);
   if (outline.size() < 3 || area == 0.0 || !std::isfinite(area))
   {
-    throw Error("The outline has no area: there is no polygon to lay around it.");
+    throw Error("The outline has no area: it cannot be approximated by a polygon.");
   }
   std::vector<Vec2> line = outline;
   if (area < 0.0)
@@ -525,7 +526,8 @@ std::vector<Vec2> approximateOutline(const std::vector<Vec2>& outline, double sp
   const double given = spacing;
   for (int attempt = 0; attempt < SpacingAttempts; ++attempt)
   {
-    // A smaller spacing follows the outline more closely until the polygon does not meet itself.
+    // A smaller spacing follows the outline more closely, until the polygon does not intersect
+    // itself.
     const Index count = std::max<Index>(
       3 * PointsPerSpacing / 2, std::llround(PointsPerSpacing * perimeter / spacing));
     const std::vector<Vec2> points = resampleOutline(line, count);
@@ -540,6 +542,6 @@ std::vector<Vec2> approximateOutline(const std::vector<Vec2>& outline, double sp
   {
     return reducePolygon(std::move(line), std::max<Index>(3, std::llround(perimeter / given)));
   }
-  throw Error("No simple polygon was found on the outline: it meets itself.");
+  throw Error("No simple polygon was found on the outline: it intersects itself.");
 }
 }

@@ -7,11 +7,11 @@ namespace tautline
 {
 namespace
 {
-/// Of the tolerance: an excess by this much has the energy 1/2.
+/// Fraction of the tolerance: an excess of this size has the energy 1/2.
 constexpr double unitOfExcess = 0.1;
-/// Of the tolerance: samples are pushed back from so far before their limit on.
+/// Fraction of the tolerance: samples are pushed back starting this far before their limit.
 constexpr double beforeLimit = 0.3;
-/// Of the tolerance: how far points may be from their parts at no cost.
+/// Fraction of the tolerance: the distance of points from their parts without cost.
 constexpr double freePart = 0.5;
 }
 
@@ -71,7 +71,7 @@ void BoundaryTerms::allowWhatIs()
 }
 
 //------------------------------------------------------------------------------
-/// How far the points of the selected facets are from where they were.
+/// Computes the displacements of the points of the selected facets.
 void BoundaryTerms::findMotion(const std::vector<Vec3>& x, std::vector<double>& ofFacets) const
 {
   const std::vector<SurfaceFacet>& facets = this->Samples.facets();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BoundaryTerms.h
- * @brief The energy that keeps points in their bands, and facets and surface near to each other.
+ * @brief The energy that keeps points in their bands, and facets and surface close to each other.
  * Internal: not installed.
  */
 #ifndef tautline_BoundaryTerms_h
@@ -13,19 +13,19 @@ namespace tautline
 {
 /**
  * @class tautline::BoundaryTerms
- * @brief A sum of squares of what distances exceed their bounds by, in units of a tenth of the
- * tolerance: of points beyond half of the tolerance, of samples near their limit.
+ * @brief A sum of squares of the excesses of distances over their bounds, in units of a tenth of
+ * the tolerance: for points beyond half of the tolerance, and for samples near their limit.
  *
- * Of each term an upper bound of the distance is kept: as long as that and the motion since are
- * within the bound, nothing is measured.
+ * For each term, an upper bound of the distance is kept: as long as this plus the motion since then
+ * is within the bound, nothing is measured.
  */
 class TAUTLINE_KERNEL_EXPORT BoundaryTerms
 {
 public:
-  /// The constraints must outlive this. @param x points of the start, which set the limits
+  /// The constraints must outlive this object. @param x the initial points, which set the limits
   BoundaryTerms(const Mesh& mesh, const ConstrainedPoints& constrained, const std::vector<Vec3>& x);
 
-  /// The points are there now; the value is that of other places, near to these.
+  /// moveTo() sets the current points; value() evaluates other, nearby points.
   void moveTo(const std::vector<Vec3>& x);
   /// The energy of all terms whose points may move, see select().
   double value(const std::vector<Vec3>& x) const;
@@ -33,25 +33,25 @@ public:
   /// -1
   void add(const std::vector<std::int32_t>& local, QuadraticModel& model) const;
 
-  /// Takes the terms of flagged points into account from now on.
+  /// Selects the terms of flagged points from now on.
   void select(const std::vector<char>& flags);
-  /// Flags the points that are in a band beyond what costs nothing, and those of samples that are
-  /// beyond their limits.
+  /// Flags the points in a band beyond the cost-free distance, and the points of samples beyond
+  /// their limits.
   void flagBeyond(std::vector<char>& flags) const;
   /// Prepares allows() and moveOne().
   void indexSamples();
-  /// Whether the samples of a point may be at x, where only this point has moved: within their
-  /// limits, or not farther than they are.
+  /// Whether the samples of a point are acceptable at x, where only this point has moved: within
+  /// their limits, or not farther than now.
   bool allows(Index p, const std::vector<Vec3>& x) const;
-  /// The same as moveTo(), where only this point has moved.
+  /// The same as moveTo() if only this point has moved.
   void moveOne(Index p, const std::vector<Vec3>& x);
-  /// Whether all terms are within what is allowed: samples within their limits, points within the
+  /// Whether all terms are within their bounds: samples within their limits, points within the
   /// distance at the start and the tolerance.
   bool isWithin() const;
-  /// The largest distance of a point from its part, beyond that at the start; at least 0.
+  /// The largest distance of a point from its part in excess of the initial distance; at least 0.
   double farthestPoint() const;
 
-  /// Samples that are beyond their limits now may stay as far from now on, but not go farther.
+  /// From now on, samples beyond their limits may keep their distance, but not increase it.
   void allowWhatIs();
   /// Multiplies the energy from now on.
   void strengthen(double factor) { this->Weight *= factor; }
@@ -76,14 +76,15 @@ private:
   ChordSamples Samples;
   std::vector<Vec3> X;
   std::vector<Banded> Bands;
-  std::vector<double> Upper;                       ///< per sample
-  std::vector<double> Allowed;                     ///< per sample: its limit, or what it is
-  std::vector<std::size_t> Points;                 ///< selected: of Bands
+  std::vector<double> Upper; ///< per sample
+  /// per sample: its limit, or its current distance
+  std::vector<double> Allowed;
+  std::vector<std::size_t> Points;                 ///< selected: indices in Bands
   std::vector<std::size_t> Chords;                 ///< selected samples
   std::vector<std::int32_t> Facets;                ///< selected
   std::vector<std::vector<std::size_t>> ChordsAt;  ///< of each facet, for allows()
   std::vector<std::vector<std::int32_t>> FacetsAt; ///< of each point
-  std::vector<Index> BandAt;                       ///< of each point: in Bands, or -1
+  std::vector<Index> BandAt;                       ///< of each point: index in Bands, or -1
   double Weight = 1;
 };
 }

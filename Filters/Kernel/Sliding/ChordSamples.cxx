@@ -11,17 +11,17 @@ namespace tautline
 {
 namespace
 {
-/// An edge is along a curve if its middle is within this fraction of its length from it.
+/// An edge follows a curve if the distance of its middle is within this fraction of its length.
 constexpr double alongCurve = 0.1;
-/// Edges of facets are divided into so many parts for samples.
+/// The number of parts into which facet edges are divided for samples.
 constexpr int divisions = 4;
-/// Of the mean edge of the facets: one sample of the surface in each cube of this size.
+/// Fraction of the mean facet edge: one sample of the surface in each cube of this size.
 constexpr double spacing = 0.2;
-/// Places of the surface that are farther from the mesh than so many mean edges are not of it.
+/// Surface points farther from the mesh than this many mean edges do not belong to it.
 constexpr double beyondMesh = 2.0;
-/// Of the tolerance: the rest is for places between the samples.
+/// Fraction of the tolerance: the rest is for positions between the samples.
 constexpr double atSamples = 0.95;
-/// Edges of pieces of the surface are divided into so many parts for samples, at most.
+/// The maximum number of parts into which edges of surface pieces are divided for samples.
 constexpr int mostDivisions = 64;
 
 Vec3 meanOf(const Index* points, int count, const std::vector<Vec3>& x)
@@ -34,8 +34,8 @@ Vec3 meanOf(const Index* points, int count, const std::vector<Vec3>& x)
   return (1.0 / count) * sum;
 }
 
-/// The weights of the corners of a triangle, or of an edge with the last corner twice, at a place
-/// of it.
+/// The weights of the corners of a triangle, or of an edge with a repeated last corner, at a
+/// position in it.
 std::array<double, 3> weightsAt(const std::array<Vec3, 3>& corner, const Vec3& place)
 {
   const auto& [a, b, c] = corner;
@@ -73,7 +73,7 @@ ChordSamples::ChordSamples(
 }
 
 //------------------------------------------------------------------------------
-/// The facets, and those that share a point with each.
+/// Finds the facets, and the neighbors that share a point with each.
 void ChordSamples::findFacets(const Mesh& mesh)
 {
   const std::vector<SurfaceFacet>& interfaces = this->Constrained.constraints().model->interfaces;
@@ -108,8 +108,8 @@ void ChordSamples::findFacets(const Mesh& mesh)
 }
 
 //------------------------------------------------------------------------------
-/// The part of a facet: that of its points, if they agree; without any, the nearest to its middle;
-/// -1 where they differ.
+/// The part of a facet: the common part of its points; without any, the nearest to its middle; -1
+/// if they differ.
 std::int32_t ChordSamples::patchOf(const SurfaceFacet& facet, const std::vector<Vec3>& x) const
 {
   const BoundaryConstraints& given = this->Constrained.constraints();
@@ -145,7 +145,7 @@ std::int32_t ChordSamples::patchOf(const SurfaceFacet& facet, const std::vector<
   return found;
 }
 
-/// The curve that the edge between two points is along, or -1.
+/// The curve that the edge between two points follows, or -1.
 std::int32_t ChordSamples::curveOf(Index a, Index b, const std::vector<Vec3>& x) const
 {
   const BoundaryConstraints& given = this->Constrained.constraints();
@@ -167,7 +167,7 @@ std::int32_t ChordSamples::curveOf(Index a, Index b, const std::vector<Vec3>& x)
 }
 
 //------------------------------------------------------------------------------
-/// The places within a facet, of a quadrilateral those of its two triangles.
+/// Adds the samples within a facet; for a quadrilateral, within its two triangles.
 void ChordSamples::addWithin(std::int32_t index)
 {
   const SurfaceFacet& facet = this->Facets[index];
@@ -181,7 +181,7 @@ void ChordSamples::addWithin(std::int32_t index)
     {
       for (int j = 1; i + j <= divisions; ++j)
       {
-        // On the diagonal once.
+        // Only once on the diagonal.
         if (i + j < divisions)
         {
           this->Forward.push_back(
@@ -198,7 +198,7 @@ void ChordSamples::addWithin(std::int32_t index)
 }
 
 //------------------------------------------------------------------------------
-/// The places on edges and facets that can move.
+/// Adds the samples on movable edges and facets.
 void ChordSamples::addForward(const std::vector<Vec3>& x)
 {
   const auto canMove = [&](Index p) { return this->Constrained.freedom(p) != Freedom::None; };
@@ -234,7 +234,7 @@ void ChordSamples::addForward(const std::vector<Vec3>& x)
 }
 
 //------------------------------------------------------------------------------
-/// Places of the surface, of which each begins at the nearest facet of its patch.
+/// Adds the samples of the surface, each starting at the nearest facet of its patch.
 void ChordSamples::addBackward(const std::vector<Vec3>& x)
 {
   const SurfaceModel& model = *this->Constrained.constraints().model;
@@ -254,7 +254,7 @@ void ChordSamples::addBackward(const std::vector<Vec3>& x)
   };
   for (int i = 0; i < surfaces; ++i)
   {
-    // The facets of the patch, or all if it has none.
+    // Use the facets of the patch, or all if it has none.
     SurfacePart pieces;
     std::vector<std::int32_t> facetOf;
     for (const bool all : { false, true })
@@ -284,7 +284,7 @@ void ChordSamples::addBackward(const std::vector<Vec3>& x)
     {
       throwIfInterrupted();
       const double longest = std::max({ norm(b - a), norm(c - b), norm(a - c) });
-      // The facets go away first where the surface bends: at the corners of its pieces.
+      // Facets first deviate where the surface bends: at the corners of its pieces.
       for (const Vec3& corner : { a, b, c })
       {
         if (longest > apart && corners.insert(corner).second)
@@ -335,7 +335,7 @@ void ChordSamples::setLimits(const std::vector<Vec3>& x)
 }
 
 //------------------------------------------------------------------------------
-/// The distance of a place from a facet; sets `best` if it is smaller.
+/// The distance of a position from a facet; sets `best` if it is smaller.
 double ChordSamples::toFacet(
   std::int32_t facet, const Vec3& place, const std::vector<Vec3>& x, Distance& best) const
 {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ChordSamples.h
- * @brief How far the facets of a mesh are from the surface its points slide on, and that surface
- * from the facets.
- * Internal: not installed.
+ * @brief The distances between the facets of a mesh and the surface on which its points slide, in
+ * both directions. Internal: not installed.
  */
 #ifndef tautline_ChordSamples_h
 #define tautline_ChordSamples_h
@@ -14,30 +13,31 @@ namespace tautline
 {
 /**
  * @class tautline::ChordSamples
- * @brief Places at which the distance of a boundary from a surface is measured, both ways.
+ * @brief Samples at which the distance between a boundary and a surface is measured, in both
+ * directions.
  *
- * Points may be on the surface and the facets between them cut off its bends. From the mesh, places
- * on the edges and within the facets are measured to the patch that the points slide on, places on
- * edges along a curve to the curve. Places all over the surface are measured to the facet that was
- * the nearest last, and to its neighbors.
+ * Even if points are on the surface, the facets between them may cut off its bends. From the mesh,
+ * samples on edges and within facets are measured to the patch on which the points slide, and
+ * samples on edges along a curve to the curve. Samples of the surface are measured to the last
+ * nearest facet and to its neighbors.
  *
- * Each sample may be as far as the samples about it were at the start, plus the tolerance.
+ * The limit of each sample is the initial distance of the samples around it plus the tolerance.
  */
 class TAUTLINE_KERNEL_EXPORT ChordSamples
 {
 public:
   /**
-   * @param x the points of the start
-   * All must outlive this. Without a model there are no samples.
+   * @param x the initial points. All arguments must outlive this object. Without a model, there are
+   * no samples.
    */
   ChordSamples(const Mesh& mesh, const ConstrainedPoints& constrained, const std::vector<Vec3>& x);
 
-  /// A distance, by the points that it depends on: the derivative by point k is weights[k] times
+  /// A distance as a function of points: the derivative with respect to point k is weights[k] times
   /// the direction.
   struct Distance
   {
     double value = 0;
-    Vec3 direction = { 0, 0, 0 }; ///< unit, away from the surface; zero where the distance is 0
+    Vec3 direction = { 0, 0, 0 }; ///< unit, away from the surface; zero if the distance is 0
     int count = 0;
     std::array<Index, MaxFaceNodes> points = {};
     std::array<double, MaxFaceNodes> weights = {};
@@ -45,16 +45,16 @@ public:
 
   std::size_t size() const { return this->Forward.size() + this->Backward.size(); }
   Distance measure(std::size_t sample, const std::vector<Vec3>& x) const;
-  /// How far a sample may be.
+  /// The largest allowed distance of a sample.
   double limit(std::size_t sample) const { return this->Limits[sample]; }
-  /// The facet of the mesh that a sample is on, or that is the nearest.
+  /// The facet of the mesh that contains a sample, or the nearest one.
   std::int32_t facet(std::size_t sample) const
   {
     return sample < this->Forward.size() ? this->Forward[sample].facet
                                          : this->Backward[sample - this->Forward.size()].facet;
   }
   const std::vector<SurfaceFacet>& facets() const { return this->Facets; }
-  /// Goes on to the facet that is the nearest now, if the sample is of the surface.
+  /// Updates the nearest facet of a surface sample.
   void follow(std::size_t sample, const std::vector<Vec3>& x);
 
 private:
@@ -84,7 +84,7 @@ private:
   const ConstrainedPoints& Constrained;
   std::vector<SurfaceFacet> Facets;
   std::vector<std::int32_t> Patches;                   ///< of the facets
-  std::vector<std::int32_t> NeighborStarts, Neighbors; ///< of each facet, itself too
+  std::vector<std::int32_t> NeighborStarts, Neighbors; ///< of each facet, including itself
   std::vector<SurfaceProjection> Whole;                ///< one: all facets of the model
   std::vector<OfMesh> Forward;
   std::vector<OfSurface> Backward;

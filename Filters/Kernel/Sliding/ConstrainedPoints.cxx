@@ -11,9 +11,9 @@ namespace tautline
 {
 namespace
 {
-/// Of the diagonal.
+/// Fraction of the diagonal.
 constexpr double defaultTolerance = 1e-3;
-/// Of the tolerance: a point this near to a flat part is on it.
+/// Fraction of the tolerance: a point this close to a flat part is on it.
 constexpr double onFlatPart = 1e-6;
 
 Vec3 entryOf(const double* vectors, Index p)

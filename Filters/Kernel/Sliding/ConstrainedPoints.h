@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ConstrainedPoints.h
- * @brief What the points of a mesh can do: stay, slide, leave a surface by a distance, or move
- * freely.
- * Internal: not installed.
+ * @brief The constraints of the points of a mesh: fixed, sliding, within a distance of a surface,
+ * or free. Internal: not installed.
  */
 #ifndef tautline_ConstrainedPoints_h
 #define tautline_ConstrainedPoints_h
@@ -19,15 +18,15 @@ namespace tautline
  * @brief The freedom of each point of a planar or volume mesh.
  *
  * Points on a flat patch or a straight curve slide in its plane or on its line. Points on other
- * parts are free within a band about the facets of the part: half of the tolerance costs nothing,
- * what is beyond costs the square of it. Points that slide on facets would stop at the ridges
- * between them. A BoundaryConstraints::surfaceTolerance of 0 is a thousandth of the diagonal here.
- * Without flags of fixed points, none is fixed.
+ * parts are free within a band around the facets of the part: distances up to half of the tolerance
+ * are free of cost, larger ones have a quadratic cost. (Points sliding on facets would stop at the
+ * ridges between them.) A BoundaryConstraints::surfaceTolerance of 0 is a thousandth of the
+ * diagonal here. Without flags of fixed points, none is fixed.
  */
 class TAUTLINE_KERNEL_EXPORT ConstrainedPoints
 {
 public:
-  /// The mesh and what the constraints point to must outlive this.
+  /// The mesh and the arrays of the constraints must outlive this object.
   ConstrainedPoints(const Mesh& mesh, const BoundaryConstraints& constraints);
 
   const BoundaryConstraints& constraints() const { return this->Given; }
@@ -36,13 +35,14 @@ public:
   Freedom freedom(Index p) const { return this->Freedoms[p]; }
   /// The unit direction of a line, or normal of a plane.
   const Vec3& direction(Index p) const { return this->Directions[p]; }
-  /// The part whose band a point is in, or -1.
+  /// The part whose band contains a point, or -1.
   std::int32_t band(Index p) const { return this->Bands[p]; }
-  /// The place nearest to x of the facets, or edges, of a part.
+  /// The position nearest to x on the facets or edges of a part.
   Vec3 nearest(std::int32_t part, const Vec3& x) const { return this->Facets[part].closest(x); }
   /// The facets of a part.
   const SurfaceProjection& facets(std::int32_t part) const { return this->Facets[part]; }
-  /// The place nearest to x on the part of a point, as smooth as the model is.
+  /// The position nearest to x on the part of a point, on the smooth surface if the model is
+  /// smooth.
   Vec3 onPart(Index p, const Vec3& x) const;
 
 private:

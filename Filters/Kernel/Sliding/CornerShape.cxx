@@ -29,15 +29,15 @@ DeterminantPlace placeInCube(const std::array<double, 3>& at)
   return place;
 }
 
-/// Half way along the edge of a wedge between its triangles: there, the derivatives in the
-/// triangle are the means of those at both ends.
+/// Halfway along a wedge edge between its triangles: there, the derivatives in the triangle are the
+/// means of the derivatives at both ends.
 DeterminantPlace placeInWedge(const CellTopology& t, int corner)
 {
   DeterminantPlace place = {};
   for (const int end : { corner, corner + 3 })
   {
     const std::array<int, 4>& nodes = t.cornerNodes[end];
-    // Seen from the other triangle the first two edges change places.
+    // As seen from the other triangle, the first two edges are exchanged.
     for (int c = 0; c < 2; ++c)
     {
       const int to = nodes[(end == corner ? c : 1 - c) + 1];

@@ -11,16 +11,16 @@
 
 namespace tautline
 {
-/// What is measured at a corner; larger is better, 1 is ideal.
+/// The measure at a corner; larger is better, 1 is ideal.
 enum class CornerMeasure
 {
   ScaledJacobian, ///< the determinant over the lengths of the edges
-  /// Of T = A W^-1: d det T^(2/d) / |T|^2, in d dimensions; of simplices the reciprocal of the
-  /// inverse mean ratio. -1 where det T is not positive.
+  /// For T = A W^-1: d det T^(2/d) / |T|^2, in d dimensions; for simplices, the reciprocal of the
+  /// inverse mean ratio. -1 if det T is not positive.
   MeanRatio
 };
 
-/// The edges of a corner as the columns of its Jacobian; of a planar mesh the third is the normal.
+/// The edges of a corner as the columns of its Jacobian; in a planar mesh, the third is the normal.
 struct CornerEdges
 {
   std::array<Vec3, 3> edges;
@@ -28,7 +28,7 @@ struct CornerEdges
   double sign; ///< -1 in a mirrored mesh
 };
 
-/// A measure, and its derivative by each edge.
+/// A measure and its derivative with respect to each edge.
 struct CornerValue
 {
   double value;
@@ -40,21 +40,21 @@ struct CornerValue
 CornerValue measureCorner(const CellTopology& t, int corner, const CornerEdges& edges,
   CornerMeasure measure, bool gradient);
 
-/// A place in a cell at which the determinant is measured: the derivatives of the map of the
+/// A position in a cell at which the determinant is measured: the derivatives of the map of the
 /// reference cell are sums over the nodes with these weights.
 struct DeterminantPlace
 {
-  std::array<std::array<double, MaxNodes>, 3> weights; ///< by u, v and w; of a planar cell two
+  std::array<std::array<double, MaxNodes>, 3> weights; ///< for u, v and w; two for a planar cell
 };
 
 /**
- * @brief The corners; of hexahedra also the other points of a lattice of 3 x 3 x 3, of wedges the
- * middles of the edges between the triangles.
+ * @brief The corners; for hexahedra, also the other points of a 3 x 3 x 3 lattice; for wedges, also
+ * the middles of the edges between the triangles.
  */
 const std::vector<DeterminantPlace>& determinantPlaces(CellType type);
 
-/// The determinant at a place.
-/// @param gradient gets the derivative by each node, or null
+/// The determinant at a position.
+/// @param gradient receives the derivative with respect to each node; or null
 double determinantAt(const CellTopology& t, const DeterminantPlace& place, const Vec3* vertices,
   const Vec3& normal, Vec3* gradient);
 }

@@ -13,23 +13,23 @@ namespace
 {
 /// Determinants are measured in units of this fraction of their mean at the start.
 constexpr double unitOfDeterminant = 0.1;
-/// The width of the window at first, where it ends, and how it becomes narrower.
+/// The initial and final width of the window, and its reduction factor.
 constexpr double firstWindow = 0.35, lastWindow = 0.004, narrower = 0.6;
 /// The window begins below the worst corner by this fraction of its width.
 constexpr double belowWorst = 0.08;
-/// A round that raises the worst corner by less than this fraction of the window is a poor one; so
-/// many of them make it narrower.
+/// A round that improves the worst corner by less than this fraction of the window is poor; after
+/// this many poor rounds, the window is narrowed.
 constexpr double poorGain = 0.01;
 constexpr int poorRounds = 3;
 constexpr int stepsOfRound = 4;
-/// Of the shortest edge at a point: how far it moves in a step.
+/// Fraction of the shortest edge at a point: its largest step.
 constexpr double longestStep = 0.3;
-/// What is added to the shape of a corner for its curvature, see addCell().
+/// The constant added to the shape of a corner for its curvature, see addCell().
 constexpr double curvatureOfPerfect = 0.3;
-/// The bounds count so much more after a round that ends beyond them.
+/// The factor on the weight of the bounds after a round that ends beyond them.
 constexpr double strongerBounds = 1.3;
 constexpr Index cellsOfChunk = 64;
-/// No threshold is above, so that determinants that are count for nothing.
+/// An upper bound of the threshold: larger determinants do not contribute.
 constexpr double mostThreshold = 1 + firstWindow;
 
 /// b(u) = -(1 - u)^2 ln u, and its derivatives.
@@ -64,7 +64,7 @@ MovingBarrier::MovingBarrier(const SlidingCells& cells, const ConstrainedPoints&
   , Longest(cells.cells().size())
   , Local(x.size(), -1)
 {
-  // Cells of almost no size have that of their neighborhood as a unit.
+  // Cells of almost zero size use the size of their neighborhood as a unit.
   double total = 0;
   for (std::size_t c = 0; c < this->Units.size(); ++c)
   {
@@ -99,7 +99,7 @@ MovingBarrier::MovingBarrier(const SlidingCells& cells, const ConstrainedPoints&
 }
 
 //------------------------------------------------------------------------------
-/// Which corners and determinants depend on a point that can move.
+/// Finds the corners and determinants that depend on a movable point.
 void MovingBarrier::findMovable()
 {
   for (const SlidingCells::Cell& cell : this->Cells.cells())
@@ -141,7 +141,7 @@ CornerEdges MovingBarrier::edgesAt(
 }
 
 //------------------------------------------------------------------------------
-/// @param least a lower bound of the determinants, which are measured if it is below what counts
+/// @param least a lower bound of the determinants, which are measured if it is below the threshold
 void MovingBarrier::valuesOf(
   std::size_t index, const std::vector<Vec3>& x, double least, Values& values) const
 {
@@ -175,8 +175,8 @@ void MovingBarrier::valuesOf(
 }
 
 //------------------------------------------------------------------------------
-/// A lower bound of the determinants of a cell at x, by how far its points are from where they are
-/// now. The derivatives, at most as long as the longest edge, change by twice as much.
+/// A lower bound of the determinants of a cell at x, from the displacements of its points. The
+/// derivatives, at most as long as the longest edge, change by up to twice the displacement.
 double MovingBarrier::leastDeterminant(std::size_t index, const std::vector<Vec3>& x) const
 {
   const SlidingCells::Cell& cell = this->Cells.cells()[index];
@@ -252,7 +252,7 @@ double MovingBarrier::worstCornerOf(std::size_t index, const Vec3* vertices) con
 }
 
 //------------------------------------------------------------------------------
-/// Numbers the flagged points that can move, and lists their cells.
+/// Numbers the flagged movable points, and lists their cells.
 void MovingBarrier::indexPoints(const std::vector<char>& moving)
 {
   std::fill(this->Local.begin(), this->Local.end(), -1);
@@ -282,7 +282,7 @@ void MovingBarrier::indexPoints(const std::vector<char>& moving)
   this->Shortest = this->Cells.shortestEdges(this->X);
 }
 
-/// The points of the cells in the window, and those beyond their bounds.
+/// Selects the points of the cells in the window, and the points beyond their bounds.
 bool MovingBarrier::selectNear()
 {
   std::vector<char> cells(this->Worst.size()), moving(this->X.size(), 0);
@@ -325,8 +325,8 @@ double MovingBarrier::energy(const std::vector<Vec3>& x) const
 }
 
 //------------------------------------------------------------------------------
-/// A corner's shape as a function of its points has a curvature that the product of gradients
-/// lacks: along each edge about (s + 0.3) / |edge|^2.
+/// The shape of a corner as a function of its points has a curvature that the product of gradients
+/// lacks: about (s + 0.3) / |edge|^2 along each edge.
 void MovingBarrier::addCell(std::size_t index, QuadraticModel& model) const
 {
   const SlidingCells::Cell& cell = this->Cells.cells()[index];
@@ -424,7 +424,7 @@ void MovingBarrier::linearize(QuadraticModel& model) const
 }
 
 //------------------------------------------------------------------------------
-/// Moves the points; `x` gets those before.
+/// Moves the points; `x` receives the previous ones.
 void MovingBarrier::moveTo(std::vector<Vec3>& x)
 {
   std::vector<double> least(this->Near.size());
@@ -439,7 +439,7 @@ void MovingBarrier::moveTo(std::vector<Vec3>& x)
 }
 
 //------------------------------------------------------------------------------
-/// One step; false if none reduces the energy by what is worth it.
+/// One step; false if no step reduces the energy sufficiently.
 bool MovingBarrier::step()
 {
   constexpr int trials = 6, halvings = 8;
@@ -479,8 +479,8 @@ bool MovingBarrier::step()
       if (now < before + enough * t * promised)
       {
         this->moveTo(x);
-        // A step that the barrier shortens says nothing against the model: more damping there would
-        // leave points that are far from the barrier behind.
+        // A step shortened by the barrier is no evidence against the model: more damping would slow
+        // down points far from the barrier.
         constexpr int fewHalvings = 1;
         const double ratio = (now - before) / (t * promised);
         this->Damping *= ratio < poor ? 3.0 : ratio > good && half <= fewHalvings ? 0.3 : 1.0;
@@ -503,7 +503,7 @@ void MovingBarrier::run(const std::function<bool(const std::vector<Vec3>&)>& acc
   int poor = 0;
   constexpr double mostDamping = 1e3;
   this->Boundary.allowWhatIs();
-  // Where the start is beyond its bounds, any better place counts until one is within.
+  // If the start is beyond its bounds, any improvement is accepted until the points are within.
   bool bestWithin = this->Boundary.isWithin();
   while (window > lastWindow && this->Steps < this->Options.steps)
   {

@@ -4,17 +4,18 @@
  * @brief Improves the worst corner of a mesh whose boundary points slide.
  * Internal: not installed.
  *
- * The method of centres (P. Huard, "Resolution of mathematical programming with nonlinear
- * constraints by the method of centres", 1967) with a compact barrier, as M. Li et al.,
- * "Incremental potential contact", ACM TOG 39 (2020), use for contact: of corners of shape s below
- * a threshold, b(u) = -(1 - u)^2 ln u with u = (s - low) / (threshold - low), where low is a little
- * below the worst corner. A few Newton steps, and the window moves up with the worst corner; it
- * becomes narrower where the worst corner no longer rises. Determinants at the corners and, of
- * hexahedra and wedges, in between, in units of a tenth of their mean at the start, count as s,
- * too: they keep cells from collapsing and from folding inside.
+ * The method of centers (P. Huard, "Resolution of mathematical programming with nonlinear
+ * constraints by the method of centres", 1967) with a compact barrier, as used for contact by M. Li
+ * et al., "Incremental potential contact", ACM TOG 39 (2020): for corners of shape s below a
+ * threshold, b(u) = -(1 - u)^2 ln u with u = (s - low) / (threshold - low), where low is slightly
+ * below the worst corner. After a few Newton steps, the window moves up with the worst corner; it
+ * is narrowed when the worst corner no longer improves. Determinants at the corners and, for
+ * hexahedra and wedges, in between, in units of a tenth of their initial mean, are also used as s:
+ * they keep cells from collapsing and from folding inside.
  *
- * Steps are Gauss-Newton's with a curvature along the edges of the corners, Levenberg's damping and
- * conjugate gradients without a matrix. Points move as ConstrainedPoints has it, see BoundaryTerms.
+ * Steps use the Gauss-Newton method with a curvature along the edges of the corners, Levenberg
+ * damping and matrix-free conjugate gradients. Points move according to ConstrainedPoints, see
+ * BoundaryTerms.
  */
 #ifndef tautline_MovingBarrier_h
 #define tautline_MovingBarrier_h
@@ -31,7 +32,7 @@ struct BarrierOptions
 {
   CornerMeasure measure = CornerMeasure::ScaledJacobian;
   int steps = 2000; ///< at most
-  /// Stop as soon as the worst corner is as good; above 1: never.
+  /// Stop as soon as the worst corner is this good; above 1: never.
   double enough = 2.0;
   int threads = 0; ///< the result does not depend on it
   /// Called after each round with the worst corner there; return false to stop.
@@ -40,30 +41,29 @@ struct BarrierOptions
 
 /**
  * @class tautline::MovingBarrier
- * @brief The points of a mesh whose worst corner rises.
+ * @brief Moves the points of a mesh to improve its worst corner.
  */
 class TAUTLINE_KERNEL_EXPORT MovingBarrier
 {
 public:
   /**
-   * @param x the points at the start; the best ones after run()
-   * All must outlive this.
+   * @param x the initial points; the best ones after run(). All arguments must outlive this object.
    */
   MovingBarrier(const SlidingCells& cells, const ConstrainedPoints& constrained,
     BoundaryTerms& boundary, std::vector<Vec3>& x, const BarrierOptions& options);
 
   /**
-   * @brief Runs until the worst corner no longer rises.
-   * @param accept whether points are acceptable, beside being within their bounds; called where the
-   * worst corner has risen by what is worth it
+   * @brief Runs until the worst corner no longer improves.
+   * @param accept whether points are acceptable, in addition to being within their bounds; called
+   * when the worst corner has improved sufficiently
    */
   void run(const std::function<bool(const std::vector<Vec3>&)>& accept);
-  /// The smallest measure of the corners with a point that can move, and of the determinants in
-  /// their units, at x.
+  /// The smallest measure of the corners with a movable point, and of the determinants in their
+  /// units, at x.
   double worst() const;
-  /// The smallest measure of the corners alone.
+  /// The smallest measure of the corners only.
   double worstCorner() const;
-  /// The same of one cell with other vertices.
+  /// The same for one cell with other vertices.
   double worstCornerOf(std::size_t cell, const Vec3* vertices) const;
   int steps() const { return this->Steps; }
 
@@ -94,7 +94,7 @@ private:
   {
     return this->Options.measure == CornerMeasure::MeanRatio ? t.samples : t.corners;
   }
-  /// Whether a corner depends on a point that can move, or, from MaxNodes on, a determinant.
+  /// Whether a corner (from MaxNodes on, a determinant) depends on a movable point.
   bool canMove(std::size_t cell, int corner) const
   {
     return (this->Movable[cell] >> corner & 1) != 0;
@@ -112,9 +112,9 @@ private:
   std::vector<double> Least, Longest;     ///< per cell: a bound of the determinants, and an edge
   std::vector<std::uint64_t> Movable;     ///< per cell, see canMove()
   double Low = 0, Threshold = 0;
-  std::vector<std::int32_t> Near;  ///< cells with a point that moves
+  std::vector<std::int32_t> Near;  ///< cells with a moving point
   std::vector<Index> Moving;       ///< points
-  std::vector<std::int32_t> Local; ///< per point: its number among these, or -1
+  std::vector<std::int32_t> Local; ///< per point: its number in Moving, or -1
   std::vector<double> Shortest;    ///< edges at each point
   double Damping = 1e-3;
   int Steps = 0;

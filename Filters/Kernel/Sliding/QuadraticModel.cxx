@@ -20,10 +20,12 @@ double product(const std::vector<Vec3>& a, const std::vector<Vec3>& b)
   return sum;
 }
 
-/// The inverse of a positive definite block, or, of another, of its trace times the identity.
+/// The inverse of a positive definite block; otherwise, the inverse of its trace times the
+/// identity.
 SymmetricBlock inverseOf(const SymmetricBlock& block)
 {
   const auto& [xx, xy, xz, yy, yz, zz] = block.entries;
+  // The cofactors of the first row.
   const double a = yy * zz - yz * yz, b = xz * yz - xy * zz, c = xy * yz - xz * yy;
   const double det = xx * a + xy * b + xz * c, trace = xx + yy + zz;
   constexpr double singular = 1e-12;
@@ -164,6 +166,7 @@ void QuadraticModel::addBlock(std::int32_t i, const SymmetricBlock& block)
 void QuadraticModel::addCorner(const CornerBlock& corner)
 {
   this->Corners.push_back(corner);
+  // The weights of the four points sum to zero, because a translation does not change the corner.
   Vec3 weights[4] = { { 0, 0, 0 }, corner.weights[0], corner.weights[1], corner.weights[2] };
   weights[0] = -1.0 * (weights[1] + weights[2] + weights[3]);
   for (int k = 0; k < 4; ++k)
@@ -181,7 +184,7 @@ void QuadraticModel::addCorner(const CornerBlock& corner)
     }
     SymmetricBlock& block = this->Sums[i];
     block.addIdentity(corner.ofNorm * dot(weights[k], weights[k]));
-    // The mixed form as a difference of squares.
+    // Write the mixed form as a difference of squares.
     block.addOuter(ofNorm + ofDeterminant, 0.5 * corner.ofMixed);
     block.addOuter(ofNorm - ofDeterminant, -0.5 * corner.ofMixed);
     block.addOuter(ofDeterminant, corner.ofDeterminant);
@@ -210,6 +213,7 @@ void QuadraticModel::apply(const std::vector<Vec3>& d, std::vector<Vec3>& result
   }
   for (const Edge& edge : this->Edges)
   {
+    // Edges act as springs.
     const Vec3 force = edge.stiffness * (d[edge.a] - d[edge.b]);
     result[edge.a] += force;
     result[edge.b] -= force;
@@ -219,6 +223,8 @@ void QuadraticModel::apply(const std::vector<Vec3>& d, std::vector<Vec3>& result
     const auto at = [&](int k) {
       return corner.points[k] < 0 ? Vec3{ 0, 0, 0 } : d[corner.points[k]];
     };
+    // Corners: the change of the Jacobian matrix gives the changes of the norm and the determinant,
+    // and the quadratic form in these three gives the forces.
     const Vec3 origin = at(0);
     Columns change = {};
     for (int k = 0; k < 3; ++k)
@@ -260,7 +266,7 @@ void QuadraticModel::apply(const std::vector<Vec3>& d, std::vector<Vec3>& result
 }
 
 //------------------------------------------------------------------------------
-/// The inverse blocks of the points, each within what the point can do.
+/// The inverse blocks of the points, each restricted to the freedom of the point.
 std::vector<SymmetricBlock> QuadraticModel::preconditioner(const std::vector<double>& damping) const
 {
   std::vector<SymmetricBlock> inverse(this->Sums);
@@ -278,7 +284,7 @@ std::vector<SymmetricBlock> QuadraticModel::preconditioner(const std::vector<dou
     }
     if (this->Freedoms[i] == Freedom::Plane)
     {
-      // P B P + t n n^T, where P takes the normal n away.
+      // P B P + t n n^T, where P projects out the normal n.
       const Vec3 bn = block * n;
       const double nbn = dot(n, bn);
       const double size = block.entries[0] + block.entries[3] + block.entries[5];
@@ -298,6 +304,8 @@ double QuadraticModel::solve(
   const std::size_t n = this->Gradient.size();
   step.assign(n, { 0, 0, 0 });
   const std::vector<SymmetricBlock> inverse = this->preconditioner(damping);
+  // Preconditioned conjugate gradients on the allowed displacements, up to a direction of negative
+  // curvature.
   std::vector<Vec3> r(n), z(n), d, hd(n);
   const auto precondition = [&]
   {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file QuadraticModel.h
- * @brief A convex quadratic model of an energy of points, minimized without a matrix.
- * Internal: not installed.
+ * @brief A convex quadratic model of an energy of points, minimized matrix-free. Internal: not
+ * installed.
  */
 #ifndef tautline_QuadraticModel_h
 #define tautline_QuadraticModel_h
@@ -28,29 +28,29 @@ enum class Freedom : unsigned char
 {
   None,  ///< it is fixed
   Line,  ///< along a direction
-  Plane, ///< at right angles to a normal
+  Plane, ///< perpendicular to a normal
   Space
 };
 
-/// The part of a displacement that a freedom with its direction or normal lets through.
+/// The component of a displacement allowed by a freedom with its direction or normal.
 TAUTLINE_KERNEL_EXPORT Vec3 allowed(Freedom freedom, const Vec3& direction, const Vec3& d);
 
 /// A 3 x 3 matrix by its columns.
 using Columns = std::array<Vec3, 3>;
 
-/// The corner of a cell as an energy of its Jacobian J sees it: column j of the change of J is the
-/// sum over edges k of weights[k][j] times the change of edge k.
+/// The corner of a cell for an energy of its Jacobian J: column j of the change of J is the sum
+/// over edges k of weights[k][j] times the change of edge k.
 struct CornerBlock
 {
-  std::array<std::int32_t, 4> points; ///< the corner, then its neighbours; -1: does not move
-  std::array<Vec3, 3> weights;        ///< of each edge, by the columns of J
+  std::array<std::int32_t, 4> points; ///< the corner, then its neighbors; -1: does not move
+  std::array<Vec3, 3> weights;        ///< of each edge, for the columns of J
   Columns jacobian, cofactor;
   /// The form ofNorm |dJ|^2 + 2 ofMixed (J : dJ)(C : dJ) + ofDeterminant (C : dJ)^2, where C is
   /// the cofactor.
   double ofNorm, ofMixed, ofDeterminant;
 };
 
-/// When a solution ends.
+/// The stopping limits of a solution.
 struct SolutionLimits
 {
   double relativeResidual = 0.1; ///< in the norm of the preconditioner
@@ -62,7 +62,7 @@ struct SolutionLimits
  * @brief Gradient and positive semidefinite Hessian of an energy, as a list of terms. The model is
  * minimized by conjugate gradients, preconditioned by the blocks of the points.
  *
- * Points are numbered from 0; number -1 stands for points that do not move and is left out.
+ * Points are numbered from 0; number -1 stands for fixed points and is ignored.
  */
 class TAUTLINE_KERNEL_EXPORT QuadraticModel
 {
@@ -73,9 +73,9 @@ public:
   void setFreedom(std::int32_t i, Freedom freedom, const Vec3& direction);
 
   void addGradient(std::int32_t i, const Vec3& g);
-  /// factor g g^T, g with `count` vectors at these points.
+  /// Adds factor g g^T, where g has `count` vectors at these points.
   void addRankOne(int count, const std::int32_t* points, const Vec3* vectors, double factor);
-  /// stiffness |d_a - d_b|^2 / 2.
+  /// Adds stiffness |d_a - d_b|^2 / 2.
   void addEdge(std::int32_t a, std::int32_t b, double stiffness);
   void addBlock(std::int32_t i, const SymmetricBlock& block);
   void addCorner(const CornerBlock& corner);
@@ -92,8 +92,8 @@ public:
 
   /**
    * @brief Minimizes the model with damping[i] |d_i|^2 / 2 added.
-   * @param step gets the minimum
-   * @return what the model without damping promises: its change at `step`, at most 0
+   * @param step receives the minimum
+   * @return the predicted change of the model without damping at `step`, at most 0
    */
   double solve(const std::vector<double>& damping, const SolutionLimits& limits,
     std::vector<Vec3>& step) const;

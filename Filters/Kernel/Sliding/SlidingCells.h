@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SlidingCells.h
- * @brief The cells of a mesh with points that can move, and what is about each point.
- * Internal: not installed.
+ * @brief The cells of a mesh with movable points, and the cells around each point. Internal: not
+ * installed.
  */
 #ifndef tautline_SlidingCells_h
 #define tautline_SlidingCells_h
@@ -11,7 +11,7 @@
 
 namespace tautline
 {
-/// Cells of the dimension of a mesh that have a point that can move, by their numbers in this list.
+/// The cells of the mesh dimension with a movable point, by their numbers in this list.
 class TAUTLINE_KERNEL_EXPORT SlidingCells
 {
 public:
@@ -39,8 +39,8 @@ public:
       vertices[k] = x[cell.nodes[k]];
     }
   }
-  /// Per point the shortest edge, at least a tenth of the mean edge of the mesh; of points without
-  /// a cell this.
+  /// Per point: the shortest edge, at least a tenth of the mean edge of the mesh; the latter for
+  /// points without a cell.
   std::vector<double> shortestEdges(const std::vector<Vec3>& x) const;
   /// Flags the cells with a flagged point.
   void flagCells(const std::vector<char>& points, std::vector<char>& cells) const;
@@ -54,7 +54,7 @@ private:
   double Sign;
 };
 
-/// The points of a mesh as vectors, and back: those that differ from the start are written.
+/// Converts the points of a mesh to vectors, and back: only changed points are written.
 TAUTLINE_KERNEL_EXPORT std::vector<Vec3> pointsOf(const double* points, Index count);
 void storeMovedPoints(const std::vector<Vec3>& start, const std::vector<Vec3>& x, double* points);
 }

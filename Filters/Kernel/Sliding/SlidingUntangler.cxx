@@ -11,15 +11,15 @@ namespace tautline
 {
 namespace
 {
-/// The share of the term of the volume in the energy.
+/// The weight of the volume term in the energy.
 constexpr double ofVolume = 0.1;
 /// eps^2 is the first plus the second times the square of the smallest determinant, if that is
 /// negative.
 constexpr double leastEps2 = 1e-6, ofSmallest2 = 0.04;
-/// A corner is valid if its determinant, in units of an ideal cell of the edges about it, exceeds
-/// this.
+/// A corner is valid if its determinant, in units of an ideal cell with the size of the surrounding
+/// edges, exceeds this.
 constexpr double validDeterminant = 1e-4;
-/// Of the size of the edges about a point: how far it moves in a step.
+/// Fraction of the size of the edges around a point: its largest step.
 constexpr double longestStep = 0.5;
 constexpr Index cellsOfChunk = 64;
 }
@@ -38,8 +38,8 @@ SlidingUntangler::SlidingUntangler(const SlidingCells& cells, const ConstrainedP
 }
 
 //------------------------------------------------------------------------------
-/// The mean edge of each cell and those about it. In tangled meshes this is too long, and the
-/// volume term drives the cells apart.
+/// The mean edge of each cell and of its surrounding cells. In tangled meshes, this is too long,
+/// and the volume term pushes the cells apart.
 void SlidingUntangler::findSizes()
 {
   const auto& cells = this->Cells.cells();
@@ -56,6 +56,7 @@ void SlidingUntangler::findSizes()
   constexpr int rounds = 2;
   for (int round = 0; round < rounds; ++round)
   {
+    // Smooth the sizes by averaging over the points and back.
     std::vector<double> ofPoints(this->X.size(), 0.0);
     for (std::size_t p = 0; p < ofPoints.size(); ++p)
     {
@@ -100,6 +101,7 @@ SlidingUntangler::Corner SlidingUntangler::cornerOf(
       result.jacobian[j] += result.weights[k][j] * edge;
     }
   }
+  // The cofactors are the derivatives of the determinant by the columns of the Jacobian matrix.
   const auto& [a, b, c] = result.jacobian;
   const double s = this->Cells.sign();
   if (t.dimension == 2)
@@ -234,10 +236,10 @@ void SlidingUntangler::addCorner(std::size_t index, int number, QuadraticModel& 
   const auto& [a, b, c] = at.jacobian;
   const double size2 = dot(a, a) + dot(b, b) + dot(c, c), d = t.dimension, p = 2.0 / d;
   const double power = t.dimension == 3 ? 1.0 / std::cbrt(chi * chi) : 1.0 / chi;
-  // Derivatives of |J|^2 chi^-p / d, by |J|^2 / 2 and chi.
+  // Derivatives of |J|^2 chi^-p / d with respect to |J|^2 / 2 and chi.
   const double byNorm = (1 - ofVolume) * 2 * power / d;
   const double byChi = -(1 - ofVolume) * p * size2 * power / (d * chi);
-  // Those of (1 + D^2) / chi, by D.
+  // Derivatives of (1 + D^2) / chi with respect to D.
   const double over = (1 + det * det) / chi;
   const double byDet = ofVolume * (2 * det - over * slope) / chi;
   const double bent =
@@ -248,6 +250,7 @@ void SlidingUntangler::addCorner(std::size_t index, int number, QuadraticModel& 
   block.jacobian = at.jacobian;
   block.cofactor = at.cofactor;
   block.ofNorm = byNorm;
+  // Second derivatives by norm and determinant; only the convex part of the volume term is kept.
   block.ofMixed = -p * byNorm / chi * slope;
   block.ofDeterminant =
     (1 - ofVolume) * p * (p + 1) * size2 * power / (d * chi * chi) * slope * slope +
@@ -257,6 +260,7 @@ void SlidingUntangler::addCorner(std::size_t index, int number, QuadraticModel& 
   {
     block.points[k] = this->Local[cell.nodes[t.cornerNodes[number][k]]];
   }
+  // The gradient by the chain rule; the first point has minus the sum of the others.
   const double ofDeterminant = byChi * slope + byDet;
   for (int k = 0; k < t.dimension; ++k)
   {
@@ -307,6 +311,7 @@ bool SlidingUntangler::step()
     {
       damping[i] = this->Damping * model.sizeOf(i);
     }
+    // Levenberg-Marquardt: the damping grows until a step reduces the energy.
     const double promised = model.solve(damping, SolutionLimits(), d);
     if (!(promised < 0))
     {
@@ -314,6 +319,7 @@ bool SlidingUntangler::step()
     }
     for (std::size_t i = 0; i < d.size(); ++i)
     {
+      // Limit each displacement relative to the shortest edge of its point.
       const double most = longestStep * this->Shortest[this->Moving[i]], length = norm(d[i]);
       d[i] = length > most ? (most / length) * d[i] : d[i];
     }
@@ -330,6 +336,7 @@ bool SlidingUntangler::step()
       {
         this->Boundary.moveTo(x);
         this->X.swap(x);
+        // Adapt the damping to the ratio of actual to predicted decrease.
         const double ratio = (now - before) / (t * promised);
         this->Damping *= half > 0 || ratio < poor ? 3.0 : ratio > good ? 0.3 : 1.0;
         this->Damping = std::max(this->Damping, least);
@@ -367,6 +374,8 @@ bool SlidingUntangler::run(int rings, int steps, const std::function<bool(Index)
       this->select(std::move(moving));
       this->Damping = 1e-3;
     }
+    // The regularization follows the smallest determinant, so that the energy is finite and becomes
+    // exact as elements become valid.
     const double worst = std::min(this->leastDeterminant(), 0.0);
     this->Eps2 = leastEps2 + ofSmallest2 * worst * worst;
     const bool moved = this->step();
@@ -423,7 +432,8 @@ void SlidingUntangler::relax(int sweeps)
   const std::int32_t* parts = this->Constrained.constraints().parts;
   const auto partOf = [&](Index p) { return parts ? parts[p] : -1; };
   const auto canMove = [&](Index p) { return this->Constrained.freedom(p) != Freedom::None; };
-  // Points of a part go to the middle of those of the same part and of the fixed ones about them.
+  // Points of a part move to the mean of their neighbors on the same part and of their fixed
+  // neighbors.
   std::vector<std::array<Index, 2>> pulls;
   for (const SlidingCells::Cell& cell : this->Cells.cells())
   {

@@ -17,35 +17,34 @@ namespace tautline
 /**
  * @class tautline::SlidingUntangler
  * @brief The foldover-free map energy (V. Garanzha et al., "Foldover-free maps in 50 lines of
- * code", ACM TOG 40, 2021) of the corners about inverted ones, with the energy of the boundary.
+ * code", ACM TOG 40, 2021) of the corners around inverted ones, plus the energy of the boundary.
  *
- * With J the Jacobian of a corner relative to an ideal cell of the size of the edges about it, D
- * its determinant and chi = (D + sqrt(eps^2 + D^2)) / 2, the energy is a weighted sum of
+ * With the Jacobian J of a corner relative to an ideal cell with the size of the surrounding edges,
+ * its determinant D, and chi = (D + sqrt(eps^2 + D^2)) / 2, the energy is a weighted sum of
  * |J|^2 / (d chi^(2/d)) and (1 + D^2) / chi. eps follows the smallest D to zero. The first term is
- * convex in J and chi, the second in D: the model of Gauss and Newton keeps these parts.
+ * convex in J and chi, the second in D: the Gauss-Newton model keeps these parts.
  */
 class TAUTLINE_KERNEL_EXPORT SlidingUntangler
 {
 public:
-  /// The points are `x`, which has to live as long as this, as all else has.
+  /// The points are `x`; all arguments must outlive this object.
   SlidingUntangler(const SlidingCells& cells, const ConstrainedPoints& constrained,
     BoundaryTerms& boundary, std::vector<Vec3>& x, int threads);
 
   /**
-   * @brief Moves the points within `rings` rings about the cells that have a corner which is not
-   * valid.
+   * @brief Moves the points within `rings` rings around the cells with an invalid corner.
    * @param proceed called after each step with the number of such cells; returns false to stop
-   * @return whether there is none any more
+   * @return whether there are no such cells left
    */
   bool run(int rings, int steps, const std::function<bool(Index)>& proceed);
-  /// Cells with a corner that is not valid.
+  /// The number of cells with an invalid corner.
   Index invalid() const;
-  /// Takes the sizes of the edges where the points are now.
+  /// Updates the sizes of the edges from the current points.
   void findSizes();
   /// The sum of -D over inverted corners, in units of the mean size.
   double invertedVolume() const;
-  /// A few steps with almost no regularization, of the points that moved last and those that are
-  /// not in their bands: valid cells stay so.
+  /// A few steps with almost no regularization, of the points that moved last and of points outside
+  /// their bands: valid cells stay valid.
   void smooth(int steps);
   /// Another start: moves each point to the mean of its neighbors, and back to its part.
   void relax(int sweeps);
@@ -76,9 +75,9 @@ private:
   BoundaryTerms& Boundary;
   std::vector<Vec3>& X;
   int Threads;
-  std::vector<double> Sizes; ///< of the edges about each cell
+  std::vector<double> Sizes; ///< of the edges around each cell
   double Eps2 = 1;
-  std::vector<std::int32_t> Near; ///< cells with a point that moves
+  std::vector<std::int32_t> Near; ///< cells with a moving point
   std::vector<Index> Moving;
   std::vector<std::int32_t> Local;
   std::vector<double> Shortest;

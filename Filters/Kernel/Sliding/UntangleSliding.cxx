@@ -10,16 +10,16 @@ namespace tautline
 {
 namespace
 {
-/// The weight of the boundary until all corners are valid, and by what it grows then.
+/// The weight of the boundary until all corners are valid, and its growth factor afterwards.
 constexpr double weakBoundary = 0.01, growth = 2.0;
 constexpr int returnSteps = 60;
-/// Neighborhoods of the cells that are not valid, and steps in each.
+/// The neighborhoods of the invalid cells, and the number of steps in each.
 constexpr int everywhere = 1 << 20;
 constexpr int rings[] = { 3, 8, everywhere };
 constexpr int stepsOfRings = 300;
 constexpr int sweepsOfRelaxation = 100;
-/// The worst corners up to which cells are improved, one after the other, until cells are valid
-/// inside, too.
+/// The successive targets of the worst corner to which cells are improved, until cells are also
+/// valid inside.
 constexpr double clearlyValid[] = { 0.02, 0.1, 0.3 };
 
 /// A run, with the time limit and the observer of the caller.
@@ -78,7 +78,7 @@ private:
     return points;
   }
 
-  /// Cells that are not valid everywhere.
+  /// The number of cells that are not valid everywhere.
   Index countInvalid() const
   {
     std::vector<signed char> validity(this->TheMesh.view().numberOfCells);
@@ -94,7 +94,7 @@ private:
       offSurface(this->Constrained, this->X).distance <= this->Constrained.tolerance();
   }
 
-  /// From where the points are.
+  /// Attempts to untangle from the current points.
   void attempt()
   {
     this->Boundary.setWeight(weakBoundary);
@@ -119,7 +119,7 @@ private:
     }
   }
 
-  /// Raises the weight of the boundary as long as the corners stay valid.
+  /// Increases the weight of the boundary as long as the corners stay valid.
   void returnToSurface()
   {
     constexpr double done = 0.6;
@@ -141,7 +141,7 @@ private:
     }
   }
 
-  /// Raises the worst corners, and the determinants between corners, until all cells are valid.
+  /// Improves the worst corners, and the determinants between corners, until all cells are valid.
   void unfold()
   {
     constexpr double done = 0.8;
@@ -161,7 +161,7 @@ private:
     }
   }
 
-  /// Puts points on what they slide on where the cells stay as valid.
+  /// Moves points onto their surfaces or curves if the cells stay equally valid.
   void place()
   {
     placeOnParts(this->Cells, this->Constrained, this->Boundary, this->Start, this->X,

@@ -15,18 +15,18 @@ namespace tautline
 struct SlidingState
 {
   Index invalid;         ///< cells with an invalid corner
-  double invertedVolume; ///< the sum of -D over inverted corners, by the mean edge
+  double invertedVolume; ///< the sum of -D over inverted corners, in units of the mean edge
   double progress;       ///< 0 to 1
   const std::vector<Vec3>& points;
 };
 
 /**
- * @brief Untangles a planar or volume mesh: first with a boundary that is held weakly, in growing
- * neighborhoods of the cells that are not valid, then, if that fails, from the means of the
- * neighbors; then brings the boundary back to the surface; then unfolds cells inside. Points that
- * need not move stay bitwise as they are.
+ * @brief Untangles a planar or volume mesh: first with a weakly constrained boundary, in growing
+ * neighborhoods of the invalid cells; if that fails, from the means of the neighbors; then returns
+ * the boundary to the surface, and unfolds cells inside. Points that need not move stay bitwise
+ * unchanged.
  * @param report called after each step; returns false to stop
- * @return 3 coordinates per point, which may be no better than the input
+ * @return 3 coordinates per point; the result may be no better than the input
  */
 TAUTLINE_KERNEL_EXPORT std::vector<double> untangleSliding(const Mesh& mesh,
   const BoundaryConstraints& constraints, int threads,

@@ -13,7 +13,7 @@ namespace tautline
 {
 namespace
 {
-/// A smallest eigenvalue below this times the largest is 0 but for rounding.
+/// A smallest eigenvalue below this times the largest is 0 up to rounding.
 constexpr double SingularTolerance = 1e-13;
 
 void check(const ConditionOptions& options)
@@ -64,8 +64,8 @@ std::vector<double> valuesOf(const PetscSystem& system, Vec vector)
   return values;
 }
 
-/// Fills the result with both eigenvalues. Rounding moves eigenvalues by about the last digit of
-/// the largest, whatever the residuals are.
+/// Fills the result with both eigenvalues. Rounding changes eigenvalues by about the last digit of
+/// the largest, regardless of the residuals.
 void fill(ExtremeEigenvalues& extremes, const PetscSystem& system, const ConditionOptions& options,
   const EigensolverStoppingTest& test, ConditionEstimate& result)
 {
@@ -89,8 +89,8 @@ void fill(ExtremeEigenvalues& extremes, const PetscSystem& system, const Conditi
   if (zero)
   {
     result.converged = false;
-    result.message = "The matrix is singular to working precision: its smallest eigenvalue is 0 "
-                     "beside the largest.";
+    result.message = "The matrix is singular to working precision: its smallest eigenvalue is "
+                     "0 relative to the largest.";
   }
   else if (low.found && low.value < 0.0)
   {
@@ -145,7 +145,7 @@ void ritzValues(const LinearSystem& system, const ConditionOptions& options,
       (solution.message.empty() ? "" : ": " + solution.message);
 }
 
-/// The spectrum of P^-1 A, whatever PETSc calls P.
+/// The spectrum of P^-1 A for any PETSc preconditioner P.
 ExtremeEigenvalues preconditionedExtremeEigenvalues(const LinearSystem& system,
   const ConditionOptions& options, Preconditioner preconditioner, const std::string& petscOptions,
   EigensolverStoppingTest& test)
@@ -206,8 +206,8 @@ ExtremeEigenvalues plainExtremeEigenvalues(const LinearSystem& system, const Pet
       }
     }
   }
-  // What shift-invert or LOBPCG cannot do, a singular or an indefinite matrix, the Lanczos method
-  // can.
+  // The Lanczos method handles cases in which shift-invert and LOBPCG fail: a singular or an
+  // indefinite matrix.
   if ((!extremes.smallest.found || !extremes.largest.found) && !test.stopped())
   {
     ExtremeEigenvalues other =
@@ -225,7 +225,7 @@ ExtremeEigenvalues plainExtremeEigenvalues(const LinearSystem& system, const Pet
   return extremes;
 }
 
-/// In the thread that works.
+/// Runs in the working thread.
 ConditionEstimate estimate(
   const LinearSystem& system, const ConditionOptions& options, WatchedWork* work)
 {
@@ -272,7 +272,7 @@ ConditionEstimate estimateCondition(const LinearSystem& system, const ConditionO
   check(options);
   if (!system.symmetric)
   {
-    throw Error("Condition numbers are found for symmetric matrices only.");
+    throw Error("Condition numbers are only available for symmetric matrices.");
   }
   const WatchLimits limits = hardLimits(options.maximumSeconds, options.cancelled, system);
   struct Job
@@ -291,7 +291,7 @@ ConditionEstimate estimateCondition(const LinearSystem& system, const ConditionO
     {
       const PetscScope scope;
       job->begun = true;
-      // Other work may have taken a part of the time.
+      // Other work may have used a part of the time.
       double& seconds = job->options.maximumSeconds;
       constexpr double smallest = 1e-3; // 0 would mean no limit
       seconds = seconds > 0.0 ? std::max(smallest, seconds - time.seconds()) : 0.0;
@@ -305,7 +305,7 @@ ConditionEstimate estimateCondition(const LinearSystem& system, const ConditionO
   result.smallestError = result.largestError = std::numeric_limits<double>::infinity();
   result.seconds = time.seconds();
   result.message = end == WatchResult::Cancelled ? "Stopped by the user."
-    : job->begun ? "The time limit was reached before anything was found: choose the method Ritz "
+    : job->begun ? "The time limit was reached before a result was found: choose the method Ritz "
                    "values, a coarser mesh or a longer time limit."
                  : BusyMessage;
   return result;

@@ -25,7 +25,7 @@ bool EigensolverStoppingTest::userStops(double fraction)
     {
       throwIfInterrupted();
     }
-    // The waiting thread is asked now and then; switching to it takes longer than a short step.
+    // The waiting thread is queried periodically; switching to it takes longer than a short step.
     const bool due = this->SinceAsked.reached(WatchInterval);
     if (!this->Work && due && this->Options.cancelled && this->Options.cancelled())
     {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ExtremeEigenvalues.h
- * @brief The smallest and the largest eigenvalue of A, or of P^-1 A, for a matrix that PETSc holds.
- * Internal: not installed.
+ * @brief The smallest and the largest eigenvalue of A, or of P^-1 A, for a PETSc matrix. Internal:
+ * not installed.
  */
 #ifndef tautline_ExtremeEigenvalues_h
 #define tautline_ExtremeEigenvalues_h
@@ -19,7 +19,7 @@ namespace tautline
 class EigensolverStoppingTest
 {
 public:
-  /// @param work where progress() is called: in the thread that waits; null: in this one
+  /// @param work progress() is called in its waiting thread; null: in this thread
   EigensolverStoppingTest(
     const PetscSystem& system, const ConditionOptions& options, WatchedWork* work = nullptr)
     : System(system)
@@ -27,15 +27,15 @@ public:
     , Work(work)
   {
   }
-  /// Reports the fraction done of the present stage; whether to stop.
+  /// Reports the fraction done of the current stage; returns whether to stop.
   bool stop(double fraction);
-  /// The next stage takes the fractions from `begin` to `end`.
+  /// Maps the next stage to the fractions from `begin` to `end`.
   void stage(double begin, double end);
   bool stopped() const { return this->Late || this->Aborted; }
   double seconds() const { return this->Time.seconds(); }
-  /// Why it stopped, or "".
+  /// The stop reason, or "".
   std::string message() const;
-  /// Throws what progress() threw.
+  /// Rethrows the exception of progress().
   void rethrow() const;
 
 private:
@@ -58,7 +58,7 @@ struct ExtremeEigenvalue
   double bound = 0.0; ///< on the absolute error, from the residual
   int iterations = 0;
   std::string method;
-  std::string message; ///< why it was not found, or not to the tolerance
+  std::string message; ///< the reason why it was not found, or not to the tolerance
   PetscVector vector;  ///< of P^-1 A
 };
 
@@ -68,22 +68,23 @@ struct ExtremeEigenvalues
   ExtremeEigenvalue smallest, largest;
 };
 
-/// Numbers from 0.25 to 1.25 that depend on the row alone: the lowest mode is never missed,
-/// whatever the ranks.
+/// Numbers from 0.25 to 1.25 that only depend on the row: the lowest mode is never missed, for any
+/// number of ranks.
 void fillStartVector(Vec vector, std::uint64_t seed = 0);
 
 /**
- * @brief Lanczos' method for P^-1 A in the inner product of P, without reorthogonalisation, in two
- * passes: the first finds the weights of the two eigenvectors, the second sums up the eigenvectors.
- * Needs five vectors, whatever the number of steps. (SLEPc's Krylov-Schur for the same operator, in
- * the inner product of A, needs 16; for the Laplacian on a grid of 60 x 60 points it takes 4 times
- * as long with SSOR, ILU(0) and ICC(0), 1.4 times with BoomerAMG.)
+ * @brief The Lanczos method for P^-1 A in the inner product of P, without reorthogonalization, in
+ * two passes: the first finds the weights of the two eigenvectors, the second accumulates the
+ * eigenvectors. Needs five vectors for any number of steps. (SLEPc's Krylov-Schur for the same
+ * operator, in the inner product of A, needs 16; for the Laplacian on a grid of 60 x 60 points, it
+ * takes 4 times as long with SSOR, ILU(0) and ICC(0), and 1.4 times as long with BoomerAMG.)
  *
- * For each of the two eigenvalues the tridiagonal matrix of the step at which it converged is
- * taken, before rounding makes copies of it. With y gathered and x = P^-1 y, the value is the
- * Rayleigh quotient x^T A x / x^T y. The distance to an eigenvalue is at most the norm of A x -
- * theta y in the inner product of P^-1; rounding in the recurrence does not matter. Where that is
- * far too large, because eigenvalues crowd, the error is estimated from the last half of the steps.
+ * For each of the two eigenvalues the tridiagonal matrix of the step at which it converged is used,
+ * before rounding creates copies of the eigenvalue. With the accumulated y and x = P^-1 y, the
+ * value is the Rayleigh quotient x^T A x / x^T y. The distance to an eigenvalue is at most the norm
+ * of A x - theta y in the inner product of P^-1; rounding in the recurrence does not matter. If
+ * that bound is far too large because eigenvalues are clustered, the error is estimated from the
+ * last half of the steps.
  *
  * Source: G. H. Golub, C. F. Van Loan, Matrix Computations, 4th ed., sections 10.1 to 10.3; C. C.
  * Paige, J. Inst. Maths Applics 18 (1976), on the effect of rounding; bounds: B. N. Parlett, The
@@ -94,13 +95,13 @@ ExtremeEigenvalues lanczosExtremeEigenvalues(
 
 /**
  * @brief Both eigenvalues of a symmetric matrix by SLEPc: the largest by Krylov-Schur; the smallest
- * by Krylov-Schur on the inverse where a factorization is affordable, else by LOBPCG with BoomerAMG
- * as the preconditioner.
+ * by Krylov-Schur on the inverse if a factorization is affordable, otherwise by LOBPCG with
+ * BoomerAMG as the preconditioner.
  */
 ExtremeEigenvalues slepcExtremeEigenvalues(Mat matrix, const LinearSystem& system, int ranks,
   const ConditionOptions& options, PetscOptionSet& optionSet, EigensolverStoppingTest& test);
 
-/// The largest alone.
+/// Only the largest.
 ExtremeEigenvalue slepcLargestEigenvalue(Mat matrix, const ConditionOptions& options,
   PetscOptionSet& optionSet, EigensolverStoppingTest& test);
 }

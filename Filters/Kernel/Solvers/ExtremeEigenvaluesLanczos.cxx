@@ -9,12 +9,12 @@ namespace tautline
 {
 namespace
 {
-/// An eigenvalue below this times the largest is zero but for rounding.
+/// An eigenvalue below this times the largest is zero up to rounding.
 constexpr double ZeroTolerance = 1e-13;
-/// How unsymmetric the action of a preconditioner may be.
+/// The tolerance for the asymmetry of a preconditioner.
 constexpr double SymmetryTolerance = 1e-7;
 constexpr Index FirstCheck = 8;
-constexpr Index ManySteps = 100; // reported as half of the work
+constexpr Index ManySteps = 100; // number of steps reported as half of the work
 
 /// The recurrence; v = P u holds throughout.
 class Recurrence
@@ -58,7 +58,7 @@ public:
   }
 
 private:
-  /// V becomes the next vector, of norm 1 in P^-1; beta what it was.
+  /// Normalizes V to norm 1 in P^-1; beta becomes its former norm.
   void normalize()
   {
     PetscReal square = 0.0;
@@ -90,11 +90,11 @@ private:
 
 /**
  * A Ritz value of the first pass and its error. An eigenvalue lies within the residual r of the
- * value. Where eigenvalues crowd, r is far larger than the error; r^2 over the distance to the next
- * Ritz value (Kato-Temple) is far smaller as long as close eigenvalues are not separated yet. So
- * the estimate is the larger one of that bound and of the change of the value since half of the
- * steps: convergence is at least quadratic in their number (Kaniel-Paige), so that no more than a
- * third of that change is left.
+ * value. For clustered eigenvalues, r is far larger than the error; r^2 over the distance to the
+ * next Ritz value (Kato-Temple) is far smaller as long as close eigenvalues are not separated yet.
+ * The estimate is therefore the larger of that bound and of the change of the value during the last
+ * half of the steps: convergence is at least quadratic in their number (Kaniel-Paige), so that the
+ * remaining error is at most a third of that change.
  */
 struct Candidate
 {
@@ -127,7 +127,7 @@ void update(Candidate& extreme, const Tridiagonal& t, bool smallest, double beta
     std::max(tolerance * std::abs(extreme.pair.value), ZeroTolerance * scale);
 }
 
-/// The value and its bound from the gathered y = P x.
+/// The value and its bound from the accumulated y = P x.
 void measure(Mat matrix, PC preconditioner, const PetscVector& y, const Candidate& candidate,
   ExtremeEigenvalue& extreme)
 {
@@ -172,7 +172,7 @@ bool isSymmetric(Mat matrix, PC preconditioner)
   return std::abs(ab - ba) <= SymmetryTolerance * std::sqrt(std::abs(aa * bb));
 }
 
-/// What the first pass leaves: candidates for both eigenvalues.
+/// The result of the first pass: candidates for both eigenvalues.
 struct FirstPass
 {
   Candidate low, high;
@@ -180,7 +180,8 @@ struct FirstPass
   bool failed = false; ///< the preconditioner is not positive definite, or not finite
 };
 
-/// Steps until both candidates have converged, or until a limit; checks them more and more rarely.
+/// Steps until both candidates have converged or a limit is reached; checks them at increasing
+/// intervals.
 FirstPass findCandidates(
   Recurrence& recurrence, const ConditionOptions& options, EigensolverStoppingTest& test)
 {
@@ -219,7 +220,7 @@ FirstPass findCandidates(
   return pass;
 }
 
-/// Repeats the recurrence and sums up the eigenvectors; false if it had to stop before the end.
+/// Repeats the recurrence and accumulates the eigenvectors; false if it had to stop early.
 bool gatherVectors(
   Recurrence& recurrence, const FirstPass& pass, EigensolverStoppingTest& test, Vec yLow, Vec yHigh)
 {
@@ -274,7 +275,7 @@ ExtremeEigenvalues lanczosExtremeEigenvalues(
   {
     return failed("The preconditioner is not positive definite, or not finite.");
   }
-  // If time is up after the first pass, there are values but no vectors.
+  // If the time limit is reached after the first pass, there are values but no vectors.
   bool gathered = false;
   if (!test.stopped())
   {

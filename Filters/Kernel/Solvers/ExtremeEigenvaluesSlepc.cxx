@@ -12,17 +12,18 @@ namespace
 {
 using PetscEigensolver = PetscHandle<EPS, EPSDestroy>;
 
-/// Unknowns up to which a factorization costs less than an iteration: of plane problems, with few
-/// neighbours, and of others.
+/// The number of unknowns up to which a factorization is cheaper than an iterative method: for
+/// planar problems, with few neighbors, and for others.
 constexpr PetscInt PlanarFactorLimit = 400000, SpatialFactorLimit = 30000;
-/// Up to this mean number of neighbours of a point, itself included, a problem counts as planar.
+/// A problem is treated as planar up to this mean number of neighbors of a point, including itself.
 constexpr double PlanarNeighbours = 11.0;
 
-constexpr PetscInt LargestBasis = 40; // vectors Krylov-Schur keeps for the largest eigenvalue
-constexpr PetscInt Block = 4;         // vectors LOBPCG iterates with
+// number of vectors that Krylov-Schur keeps for the largest eigenvalue
+constexpr PetscInt LargestBasis = 40;
+constexpr PetscInt Block = 4; // number of vectors in LOBPCG iterations
 
-/// With a factorization, iterations are cheap, and the error bound is by the residual of A x, which
-/// is larger than that of A^-1 x: the tolerance times this, and not below the least.
+/// With a factorization, iterations are cheap, but the error bound uses the residual of A x, which
+/// is larger than the residual of A^-1 x: use the tolerance times this, but at least the minimum.
 constexpr double FactoredTolerance = 1e-4, LeastTolerance = 1e-12;
 
 bool isFactorAffordable(Mat matrix, int blockSize)
@@ -69,9 +70,9 @@ void create(Mat matrix, const ConditionOptions& options, EigensolverStoppingTest
 }
 
 /**
- * @brief The extreme eigenpair, with the error bound from its residual. Beside the smallest
- * eigenvalue the next one has converged, too, and the distance between them sharpens the bound
- * (Kato-Temple): else rounding would hide a small eigenvalue beside a large one.
+ * @brief The extreme eigenpair, with the error bound from its residual. In addition to the smallest
+ * eigenvalue, the next one has also converged, and the distance between them sharpens the bound
+ * (Kato-Temple): otherwise, rounding would hide a small eigenvalue next to a large one.
  */
 void collect(Mat matrix, EPS solver, bool smallest, ExtremeEigenvalue& extreme)
 {
@@ -173,8 +174,8 @@ ExtremeEigenvalues slepcExtremeEigenvalues(Mat matrix, const LinearSystem& syste
       petsc(EPSGetST(solver, &transformation));
       if (factorize)
       {
-        // MUMPS counts negative pivots (Sylvester): the smallest eigenvalue is the one nearest to 0
-        // if there are none.
+        // MUMPS counts negative pivots (Sylvester): if there are none, the smallest eigenvalue is
+        // the one nearest to 0.
         LinearSystem symmetric = system;
         symmetric.symmetric = true;
         symmetric.positiveDefinite = false;
@@ -189,7 +190,8 @@ ExtremeEigenvalues slepcExtremeEigenvalues(Mat matrix, const LinearSystem& syste
           EPSSetTolerances(solver, std::max(FactoredTolerance * options.tolerance, LeastTolerance),
             options.maximumIterations));
         const std::string package = chooseFactorization(pc, symmetric, ranks, optionSet, "st_");
-        optionSet.setDefault("-st_mat_mumps_icntl_13", "1"); // or several ranks do not count
+        // otherwise, several ranks do not count pivots
+        optionSet.setDefault("-st_mat_mumps_icntl_13", "1");
         low.method = "Krylov-Schur, shift-invert (Cholesky by " + package + ")";
       }
       else

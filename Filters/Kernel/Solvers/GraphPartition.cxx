@@ -21,7 +21,7 @@ namespace
 using PetscPartitioning = PetscHandle<MatPartitioning, MatPartitioningDestroy>;
 using PetscIndices = PetscHandle<IS, ISDestroy>;
 
-/// Pairs of cells with a common facet, both ways.
+/// Pairs of cells with a common facet, in both orders.
 std::vector<std::pair<Index, Index>> neighbours(const Mesh& mesh)
 {
   std::vector<std::pair<Index, Index>> pairs;
@@ -40,7 +40,7 @@ std::vector<std::pair<Index, Index>> neighbours(const Mesh& mesh)
   return pairs;
 }
 
-/// What PETSc takes over and frees.
+/// An array that PETSc takes over and frees.
 PetscInt* petscArray(std::size_t size)
 {
   PetscInt* array = nullptr;
@@ -66,24 +66,23 @@ PetscMatrix graphOf(Index cells, const std::vector<std::pair<Index, Index>>& pai
 }
 
 /**
- * @brief PT-Scotch works with one thread from here on, unless the environment states how many.
+ * @brief Makes PT-Scotch use one thread from now on, unless the environment specifies a number.
  *
- * Its threads call MPI at the same time (where it divides copies of a graph, from four ranks on),
- * which MPI allows with MPI_THREAD_MULTIPLE only; ParaView's MPI has MPI_THREAD_SINGLE, and crashes
- * or hangs. PETSc has no option for it, so that is set as Scotch reads it, once.
+ * Its threads call MPI concurrently (when it divides copies of a graph, on four ranks or more),
+ * which requires MPI_THREAD_MULTIPLE; ParaView's MPI has MPI_THREAD_SINGLE, and crashes or hangs.
+ * PETSc has no option for this, so the environment variable that Scotch reads is set once.
  */
 void useOneThread()
 {
   static const bool done = setenv("SCOTCH_PTHREAD_NUMBER", "1", 0) == 0;
   if (!done)
   {
-    throw Error(
-      "The environment variable SCOTCH_PTHREAD_NUMBER cannot be set: there is no memory.");
+    throw Error("The environment variable SCOTCH_PTHREAD_NUMBER cannot be set: out of memory.");
   }
 }
 
 /// The parts of the vertices of this rank.
-/// @param weights made by petscArray(), or null: all are equal
+/// @param weights from petscArray(), or null: all are equal
 std::vector<int> partsOf(
   MPI_Comm comm, const PetscMatrix& graph, Index vertices, PetscInt* weights, int parts)
 {
@@ -108,12 +107,11 @@ std::vector<int> partsOf(
 
 [[noreturn]] void throwNotDivided(const PetscError& error)
 {
-  throw NotDivided(std::string("PT-Scotch, through PETSc, has not divided the mesh (") +
-    error.what() + "): take a k-d tree, or a PETSc with PT-Scotch.");
+  throw NotDivided(std::string("PT-Scotch, through PETSc, failed to divide the mesh (") +
+    error.what() + "): use a k-d tree, or a PETSc with PT-Scotch.");
 }
 
-/// The points that this rank owns, with numbers that follow those of the rank before, and their
-/// neighbours.
+/// The owned points, numbered consecutively over the ranks, and their neighbors.
 struct PointGraph
 {
   std::vector<Index> offsets = { 0 }, neighbours, weights;
@@ -171,15 +169,14 @@ PointGraph pointGraph(const DistributedMesh& mesh)
         graph.weights.push_back(cells.offsets[p + 1] - cells.offsets[p]);
       }
     });
-  // PT-Scotch adds up neighbours and weights of all ranks.
+  // PT-Scotch sums neighbors and weights over all ranks.
   constexpr Index most = std::numeric_limits<PetscInt>::max();
   const Index weight = std::accumulate(graph.weights.begin(), graph.weights.end(), Index(0));
   if (std::max({ mesh.globalPoints(), mesh.group().sum(graph.offsets.back()),
         mesh.group().sum(weight) }) > most)
   {
-    throw NotDivided(
-      "The mesh is too large for PETSc's 32-bit numbers: take a k-d tree, or a PETSc "
-      "with 64-bit indices.");
+    throw NotDivided("The mesh is too large for PETSc's 32-bit numbers: use a k-d tree, or a PETSc "
+                     "with 64-bit indices.");
   }
   return graph;
 }
@@ -192,7 +189,7 @@ std::vector<int> partitionGraph(const Mesh& mesh, int parts)
   if (parts < 1 || parts > cells)
   {
     throw Error("A mesh of " + std::to_string(cells) + " cells cannot have " +
-      std::to_string(parts) + " parts: from 1 to the number of cells is allowed.");
+      std::to_string(parts) + " parts: choose from 1 to the number of cells.");
   }
   if (parts == 1)
   {
@@ -221,7 +218,7 @@ std::vector<int> partitionPoints(const DistributedMesh& mesh, Communicator commu
   const PointGraph points = pointGraph(mesh);
   const auto own = static_cast<Index>(points.weights.size());
   std::vector<int> parts;
-  // What fails on one rank before PETSc communicates fails on all.
+  // A failure on one rank before PETSc communicates fails on all.
   std::unique_ptr<PetscScope> scope;
   PetscInt *offsets = nullptr, *neighbours = nullptr, *weights = nullptr;
   mesh.group().together(

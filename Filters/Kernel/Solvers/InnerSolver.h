@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file InnerSolver.h
- * @brief A cycle of multigrid or a factorization of PETSc inside a method of Tautline's own.
- * Internal: not installed.
+ * @brief A multigrid cycle or a factorization from PETSc inside a method of Tautline. Internal: not
+ * installed.
  */
 #ifndef tautline_InnerSolver_h
 #define tautline_InnerSolver_h
@@ -13,7 +13,7 @@ namespace tautline
 {
 /**
  * @class tautline::InnerSolver
- * @brief z = S r, S symmetric positive definite: one cycle of BoomerAMG, or the inverse.
+ * @brief z = S r with a symmetric positive definite S: one cycle of BoomerAMG, or the inverse.
  */
 class InnerSolver
 {
@@ -25,15 +25,15 @@ public:
   };
 
   /**
-   * @brief Sets the map up.
+   * @brief Sets up the map.
    * @param matrix symmetric positive definite; at least one row
    * @param blockSize unknowns per point
    *
-   * Throws Error with PETSc's reason where the set-up fails.
+   * Throws Error with PETSc's reason if the setup fails.
    */
   InnerSolver(SparseMatrix matrix, int blockSize, Kind kind);
 
-  /// z = S r. Throws Error where PETSc fails.
+  /// z = S r. Throws Error if PETSc fails.
   void apply(const double* r, double* z);
 
 private:

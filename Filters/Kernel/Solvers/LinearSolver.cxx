@@ -12,26 +12,26 @@ namespace tautline
 {
 namespace
 {
-/// What work does while it can be given up.
+/// The stage of work that can be abandoned.
 enum class Stage
 {
-  Waiting, // for other work that uses PETSc
+  Waiting, // waiting for other work that uses PETSc
   SetUp,
   Solve
 };
 
-/// What one piece of work owns: it may go on when the solver has gone.
+/// The data owned by one piece of work, which may continue after the solver was destroyed.
 struct Job
 {
   std::shared_ptr<LinearSolverState> state;
   SolverOptions options;
-  Stopwatch time; // since the caller has begun to wait
+  Stopwatch time; // since the caller began to wait
   std::atomic<Stage> stage{ Stage::Waiting };
   std::vector<double> b, x;
   double seconds = 0.0;
   LinearSolution solution;
 
-  /// In the thread that works: its limits, and where its callbacks are called.
+  /// In the working thread: sets its limits and the thread of its callbacks.
   void begin(WatchedWork* work)
   {
     this->state->Options = this->options;
@@ -123,12 +123,12 @@ void LinearSolver::abandon(SolveReason reason, const std::string& stage)
 {
   this->Lost = reason;
   this->LostMessage = stage;
-  this->Impl.reset(); // the work has it as long as it goes on
+  this->Impl.reset(); // the work owns it as long as it runs
 }
 
 namespace
 {
-/// Why a piece of work was given up.
+/// The reason why a piece of work was abandoned.
 std::string givenUp(WatchResult result, Stage stage, const SolverOptions& options)
 {
   if (result == WatchResult::Cancelled)
@@ -140,7 +140,7 @@ std::string givenUp(WatchResult result, Stage stage, const SolverOptions& option
   {
     text = options.method == KrylovMethod::Direct
       ? "The factorization"
-      : std::string(stage == Stage::SetUp ? "The set-up of " : "An iteration with ") +
+      : std::string(stage == Stage::SetUp ? "The setup of " : "An iteration with ") +
         nameOf(options.preconditioner);
     text += std::string(" was not finished in time: ") + remedyFor(options) + ".";
   }
@@ -181,7 +181,7 @@ double LinearSolver::setUp()
   return job->seconds;
 }
 
-/// What a solve returns once the work was given up: x is what it starts from.
+/// The result of a solve after the work was abandoned: x is its initial guess.
 LinearSolution LinearSolver::lost(const double* b, double* x) const
 {
   const SparseMatrix& matrix = *this->System.matrix;

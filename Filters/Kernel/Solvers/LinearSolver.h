@@ -4,17 +4,17 @@
  * @brief Sparse linear systems solved by PETSc: Krylov methods and preconditioners of chapter 2,
  * and direct solvers.
  *
- * Each solver has options of its own; those of other users of PETSc in the process are neither read
- * nor changed. PETSc is initialized at first use, on the MPI the program has (or its own), without
- * its signal handler and without .petscrc. Its errors become Error.
+ * Each solver has its own options; options of other users of PETSc in the process are neither read
+ * nor changed. PETSc is initialized at first use, with the MPI of the program (or its own), without
+ * its signal handler and without .petscrc. Its errors are converted to Error.
  *
- * Limits: on one rank, PETSc works in a thread of its own if there is a time limit or a `cancelled`
- * function, and the calling thread waits for it; the observer is called from there. A set-up that
- * is given up goes on in the background until it ends by itself, and then frees its memory. The
- * next solver waits for that, under its own limits. If the process ends meanwhile, it ends without
- * waiting. On several ranks, where the program has started MPI with less than MPI_THREAD_MULTIPLE
- * (pvserver, pvbatch, MPI_Init()) or has started PETSc itself, the calling thread does the work,
- * and limits are checked after the set-up and between iterations.
+ * Limits: on one rank, PETSc runs in a separate thread if there is a time limit or a `cancelled`
+ * function, and the calling thread waits for it and calls the observer. An abandoned setup
+ * continues in the background until it ends by itself, and then frees its memory. The next solver
+ * waits for it, under its own limits. If the process ends in the meantime, it does not wait. On
+ * several ranks, or if the program has started MPI with less than MPI_THREAD_MULTIPLE (pvserver,
+ * pvbatch, MPI_Init()) or has started PETSc itself, the calling thread does the work, and limits
+ * are checked after the setup and between iterations.
  */
 #ifndef tautline_LinearSolver_h
 #define tautline_LinearSolver_h
@@ -37,46 +37,48 @@ class TAUTLINE_SOLVERS_EXPORT LinearSolver
 {
 public:
   /**
-   * @brief Hands the matrix to PETSc; the SparseMatrix must outlive the solver. Collective over the
-   * ranks. Throws Error for an invalid option string (naming the option), an empty matrix, entries
-   * that are not finite, no memory, or if a limit is reached while an abandoned set-up still
-   * occupies PETSc.
+   * @brief Passes the matrix to PETSc; the SparseMatrix must outlive the solver. Collective over
+   * the ranks. Throws Error for an invalid option string (stating the option), an empty matrix,
+   * entries that are not finite, insufficient memory, or if a limit is reached while an abandoned
+   * setup still occupies PETSc.
    */
   LinearSolver(const LinearSystem& system, const SolverOptions& options);
   ~LinearSolver();
   LinearSolver(const LinearSolver&) = delete;
   LinearSolver& operator=(const LinearSolver&) = delete;
 
-  /// Builds the preconditioner or factorization, unless it exists; returns the seconds it took. A
-  /// failure, or a limit that is reached, is the reason of the following solves.
+  /// Builds the preconditioner or factorization unless it exists; returns the elapsed seconds. A
+  /// failure or a reached limit becomes the reason of the following solves.
   double setUp();
 
   /**
-   * @brief Solves A x = b. On several ranks b holds this rank's contributions (added up like the
-   * matrix) and x gets the values of all of this rank's unknowns, shared ones too. A failure is a
-   * reason, with x the last iterate; it does not throw. If the work was given up, x is 0 (or the
-   * initial guess) and this solver is used up: later solves return the same reason.
+   * @brief Solves A x = b. On several ranks, b holds the contributions of this rank (summed like
+   * the matrix), and x receives the values of all unknowns of this rank, including shared ones.
+   * Failures do not throw: they are reported as a reason, with x as the last iterate. If the work
+   * was abandoned, x is 0 (or the initial guess), and this solver cannot be used again: later
+   * solves return the same reason.
    *
-   * Whatever PETSc reports, the residual |b - A x| is computed by Tautline's own product: see
-   * ResidualFactor.
+   * Independent of PETSc's report, Tautline computes the residual |b - A x| with its own product:
+   * see ResidualFactor.
    */
   LinearSolution solve(const double* b, double* x);
 
-  /// Tolerances, limits, observer and initial guess may change between solves; the rest is read
-  /// once.
+  /// Tolerances, limits, observer and initial guess may change between solves; other options are
+  /// read once.
   SolverOptions& options();
 
-  /// PETSc's objects; in LinearSolverState.h, for the kernel itself.
+  /// The PETSc objects, declared in LinearSolverState.h, for use in the kernel.
   LinearSolverState& state() { return *this->Impl; }
 
 private:
   void abandon(SolveReason reason, const std::string& stage);
   LinearSolution lost(const double* b, double* x) const;
 
-  std::shared_ptr<LinearSolverState> Impl; // null when it was given up
+  std::shared_ptr<LinearSolverState> Impl; // null if it was abandoned
   LinearSystem System;
   SolverOptions Options;
-  SolveReason Lost = SolveReason::Exact; // why it was given up; Exact: it was not
+  // the reason for abandoning it; Exact: it was not abandoned
+  SolveReason Lost = SolveReason::Exact;
   std::string LostMessage;
 };
 }

@@ -15,10 +15,10 @@ namespace
 /// A direct solve must leave a residual below this, relative to b; a singular matrix does not.
 constexpr double DirectTolerance = 1e-6;
 
-/// A solution that leaves this fraction of the right-hand side is hardly better than 0.
+/// A solution with a residual above this fraction of the right-hand side is hardly better than 0.
 constexpr double FalseResidual = 0.5;
 
-/// How often a method goes on where its own test was met but the residual is not small.
+/// How often a method continues if its own test was met but the residual is not small.
 constexpr int Rounds = 4;
 
 /// A residual is rounding if it is below this many units in the last place of |A| |x| + |b|.
@@ -39,7 +39,7 @@ KSPType typeOf(KrylovMethod method)
     case KrylovMethod::Direct:
       return KSPPREONLY;
   }
-  throw Error("There is no solver with number " + std::to_string(static_cast<int>(method)) + ".");
+  throw Error("Unknown solver number " + std::to_string(static_cast<int>(method)) + ".");
 }
 
 SolveReason translate(KSPConvergedReason reason, bool direct)
@@ -69,15 +69,15 @@ SolveReason translate(KSPConvergedReason reason, bool direct)
       return SolveReason::NotANumber;
     case KSP_DIVERGED_PC_FAILED:
       return SolveReason::PreconditionerFailed;
-    case KSP_CONVERGED_ITS: // of a method of the PETSc options without a test, or a factorization
+    case KSP_CONVERGED_ITS: // a method from the PETSc options without a test, or a factorization
       return direct ? SolveReason::Exact : SolveReason::OtherConvergence;
-    // Other positive reasons end a step within a region of trust; the system is not solved.
+    // Other positive reasons end a trust-region step; the system is not solved.
     default:
       return SolveReason::OtherFailure;
   }
 }
 
-/// Why a preconditioner could not be set up.
+/// The reason why a preconditioner could not be set up.
 const char* explain(PCFailedReason reason)
 {
   switch (reason)
@@ -88,7 +88,7 @@ const char* explain(PCFailedReason reason)
       return "A pivot is zero: the matrix is singular, or not definite enough for this "
              "preconditioner; choose Preconditioner = Jacobi or BoomerAMG.";
     case PC_FACTOR_OUTMEMORY:
-      return "The memory does not suffice for the factors; choose Solver = CG with "
+      return "Insufficient memory for the factors; choose Solver = CG with "
              "Preconditioner = BoomerAMG.";
     case PC_SUBPC_ERROR:
       return "An inner solver failed: a pivot is zero; choose Preconditioner = Jacobi or "
@@ -152,8 +152,8 @@ void LinearSolverState::requireAlive() const
 {
   if (!petscUsable() || this->Generation != petscGeneration())
   {
-    throw Error("Other code of this process has shut down PETSc since this linear solver was made: "
-                "make a new one.");
+    throw Error("Other code in this process has shut down PETSc since this linear solver was "
+                "created: create a new one.");
   }
 }
 
@@ -178,8 +178,8 @@ void LinearSolverState::configure()
     petsc(KSPGMRESSetRestart(this->Solver, this->Options.restart));
   }
   petsc(
-    liftMinresRadius(this->Solver)); // of other methods, too: the PETSc options may choose MINRES
-  // ILU and ICC work on one rank; on several they become the solvers of the blocks.
+    liftMinresRadius(this->Solver)); // also for other methods: the PETSc options may select MINRES
+  // ILU and ICC work on one rank; on several ranks, they become the solvers of the blocks.
   const bool parallel = this->Objects.ranks() > 1;
   switch (direct ? Preconditioner::None : this->Options.preconditioner)
   {
@@ -213,7 +213,7 @@ void LinearSolverState::configure()
       petsc(PCSetType(pc, PCNONE));
       break;
     default:
-      throw Error("There is no preconditioner with number " +
+      throw Error("Unknown preconditioner number " +
         std::to_string(static_cast<int>(this->Options.preconditioner)) + ".");
   }
   if (direct)
@@ -235,11 +235,11 @@ void LinearSolverState::configure()
   if (split && this->System.blockSize < 2)
   {
     throw Error(
-      "PETSc option -pc_type fieldsplit: it splits the unknowns by their components, as "
-      "those of a displacement; this system has one unknown per point. Remove the option.");
+      "PETSc option -pc_type fieldsplit: it splits the unknowns by components (for example, of "
+      "a displacement), but this system has one unknown per point. Remove the option.");
   }
   this->OptionSet.rejectUnused(false);
-  // The function test(), called in each iteration, calls the one chosen by now.
+  // The function test(), called in each iteration, calls the currently selected test.
   petsc(KSPGetAndClearConvergenceTest(
     this->Solver, &this->Test, &this->TestContext, &this->DestroyTest));
   petsc(KSPSetConvergenceTest(this->Solver, test, this, nullptr));
@@ -279,7 +279,7 @@ PetscErrorCode LinearSolverState::test(
   return code;
 }
 
-/// Whether the observer or the user ends the solve. No exception may pass through PETSc.
+/// Whether the observer or the user stops the solve. No exception may propagate through PETSc.
 bool LinearSolverState::userStops(int iteration, double norm)
 {
   try
@@ -375,8 +375,8 @@ double LinearSolverState::setUp()
   return elapsed;
 }
 
-/// In a semidefinite matrix a zero on the diagonal means an empty row, which Jacobi would not
-/// notice.
+/// In a semidefinite matrix, a zero on the diagonal implies an empty row, which Jacobi would not
+/// detect.
 void LinearSolverState::findEmptyRows()
 {
   if (!this->System.symmetric || !this->System.positiveDefinite)
@@ -421,8 +421,8 @@ void LinearSolverState::runSolver(Vec b, Vec x, LinearSolution& solution)
       petsc(PCGetFailedReason(pc, &why));
       solution.message = explain(why);
     }
-    // Where conjugate gradients break down, PETSc's record lacks the last iteration, and its loop
-    // over what is there instead may not end.
+    // If conjugate gradients break down, the last iteration is missing from PETSc's record, and its
+    // loop over the uninitialized entries may not terminate.
     if (this->Options.ritzValues && (reason > 0 || reason == KSP_DIVERGED_ITS))
     {
       this->ritzValues(solution);
@@ -432,7 +432,7 @@ void LinearSolverState::runSolver(Vec b, Vec x, LinearSolution& solution)
   {
     solution.reason = SolveReason::OtherFailure;
     solution.message = this->OptionSet.explain(error, this->subject());
-    // PETSc leaves a solver that failed in the middle in a state that cannot be destroyed.
+    // After a failure during a solve, PETSc leaves the solver in a state that cannot be destroyed.
     this->Failure = solution.reason;
     this->FailureText = solution.message;
     this->Solver.leak();
@@ -451,7 +451,7 @@ LinearSolution LinearSolverState::solve(const double* b, double* x)
   return solution;
 }
 
-/// solve() without the residual of what is returned unverified: x as it was.
+/// solve() without verification; x is unchanged if the solution is returned unverified.
 LinearSolution LinearSolverState::attempt(const double* b, double* x)
 {
   LinearSolution solution;
@@ -463,7 +463,7 @@ LinearSolution LinearSolverState::attempt(const double* b, double* x)
   {
     std::fill_n(x, n, 0.0);
   }
-  // A preconditioner that cannot be set up fails every solve.
+  // If the setup of the preconditioner fails, every solve fails.
   solution.setupSeconds = this->setUp();
   if (this->Failure != SolveReason::Exact)
   {
@@ -501,7 +501,7 @@ LinearSolution LinearSolverState::attempt(const double* b, double* x)
     }
     const bool relative = solution.reason == SolveReason::RelativeTolerance;
     this->takeSolution(b, unknowns, x, solution);
-    // The method goes on from here where its own test was met too early.
+    // If the method's own test was met too early, the method continues from here.
     again = solution.reason == SolveReason::FalseConvergence && relative && round < Rounds &&
       !this->Options.ritzValues && solution.iterations < most && solution.trueResidual > 0.0 &&
       this->tighten(solution, most);
@@ -514,8 +514,7 @@ LinearSolution LinearSolverState::attempt(const double* b, double* x)
   return solution;
 }
 
-/// Tolerances for another round that leaves less than the allowed residual; false if there are
-/// none.
+/// Sets tolerances for another round to reach the allowed residual; false if there are none.
 bool LinearSolverState::tighten(const LinearSolution& solution, int most)
 {
   constexpr double margin = 0.1;
@@ -533,7 +532,7 @@ bool LinearSolverState::tighten(const LinearSolution& solution, int most)
   return true;
 }
 
-/// Copies the solution to x and verifies it. x stays as it was unless both are finite.
+/// Copies the solution to x and verifies it. x is unchanged unless both are finite.
 void LinearSolverState::takeSolution(
   const double* b, Vec unknowns, double* x, LinearSolution& solution)
 {
@@ -580,7 +579,7 @@ double LinearSolverState::allowedResidual() const
     : std::min(ResidualFactor * this->Relative, std::max(FalseResidual, this->Relative));
 }
 
-/// What rounding may leave of b - A x.
+/// The part of b - A x that may be due to rounding.
 double LinearSolverState::roundingLevel(const double* b, const double* x) const
 {
   const SparseMatrix& matrix = *this->System.matrix;
@@ -596,7 +595,7 @@ double LinearSolverState::roundingLevel(const double* b, const double* x) const
   return RoundingUnits * std::numeric_limits<double>::epsilon() * this->norm(sizes);
 }
 
-/// By Tautline's own product.
+/// Uses Tautline's own matrix-vector product.
 Residual LinearSolverState::residual(const double* b, const double* x) const
 {
   const SparseMatrix& matrix = *this->System.matrix;
@@ -609,9 +608,8 @@ Residual LinearSolverState::residual(const double* b, const double* x) const
 }
 
 /**
- * @brief The residual of the system itself: a preconditioner may make a large one look small, a
- * factorization does not notice that a matrix is singular, and some methods report success without
- * any work.
+ * @brief Checks the true residual: a preconditioner may hide a large residual, a factorization does
+ * not detect a singular matrix, and some methods report success without any work.
  */
 void LinearSolverState::verify(
   const double* b, const double* x, const Residual& residual, LinearSolution& solution)
@@ -637,12 +635,12 @@ void LinearSolverState::verify(
   std::ostringstream text;
   text.precision(2);
   const char* unit = before > 0.0 ? " times the right-hand side" : "";
-  text << (direct ? "The matrix is singular or nearly so: a direct solve leaves a residual of "
+  text << (direct ? "The matrix is singular or nearly so: the residual of a direct solve is "
                   : "The residual is ")
        << (before > 0.0 ? after / before : after) << unit;
   if (!direct)
   {
-    text << ", allowed is " << (before > 0.0 ? allowed : ResidualFactor * this->Absolute);
+    text << "; the allowed value is " << (before > 0.0 ? allowed : ResidualFactor * this->Absolute);
   }
   solution.reason = direct ? SolveReason::PreconditionerFailed : SolveReason::FalseConvergence;
   solution.message = text.str() + ".";

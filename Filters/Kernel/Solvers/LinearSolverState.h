@@ -17,12 +17,12 @@
 
 namespace tautline
 {
-/// Limits of work on a system that is given up, some time after those at which it ends by itself;
-/// none on several ranks, where all have to end together.
+/// Limits after which the work on a system is abandoned, somewhat later than the limits at which it
+/// ends by itself; none on several ranks, which must all end together.
 WatchLimits hardLimits(
   double maximumSeconds, const std::function<bool()>& cancelled, const LinearSystem& system);
 
-/// The system, with copies of what it does not own.
+/// The system, with copies of the data it does not own.
 LinearSystem owned(const LinearSystem& system);
 
 /// The objects of one solver.
@@ -30,7 +30,7 @@ struct LinearSolverState
 {
   LinearSolverState(const LinearSystem& system, const SolverOptions& options);
 
-  /// Throws Error if PETSc has been shut down since: nothing of it may be touched.
+  /// Throws Error if PETSc has been shut down since: its objects must not be accessed.
   void requireAlive() const;
   double setUp();
   LinearSolution solve(const double* b, double* x);
@@ -41,24 +41,25 @@ struct LinearSolverState
   PetscOptionSet OptionSet;
   PetscSystem Objects;
   PetscSolver Solver;
-  bool Ready = false;                       // set up, or failed to
-  SolveReason Failure = SolveReason::Exact; // of the set-up; Exact: none
+  bool Ready = false;                       // the setup has been attempted
+  SolveReason Failure = SolveReason::Exact; // of the setup; Exact: none
   std::string FailureText;
 
-  // The convergence test that PETSc or its options chose; Tautline's calls it first.
+  // The convergence test selected by PETSc or its options; Tautline's test calls it first.
   PetscErrorCode (*Test)(KSP, PetscInt, PetscReal, KSPConvergedReason*, void*) = nullptr;
   void* TestContext = nullptr;
   ContextDestructor DestroyTest = nullptr;
 
-  // Of the current set-up or solve.
-  WatchedWork* Work = nullptr; // calls back to the thread that waits; null: this one does all
+  // The current setup or solve.
+  // calls back to the waiting thread; null: this thread does all the work
+  WatchedWork* Work = nullptr;
   Stopwatch Time;
   Stopwatch SinceObserved, SinceAsked;
   std::vector<double> Residuals;
   int Before = 0;                           // iterations of earlier rounds
   double Relative = 0.0, Absolute = 0.0;    // tolerances
   SolveReason Stopped = SolveReason::Exact; // TimeLimit or Aborted
-  std::exception_ptr Thrown;                // by the observer
+  std::exception_ptr Thrown;                // thrown by the observer
   bool Verified = false;                    // whether the residual of the solution is known
 
   ~LinearSolverState();

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PetscCompatibility.h
- * @brief What differs between PETSc 3.18 and 3.25, in one place.
- * Internal: not installed.
+ * @brief The differences between PETSc 3.18 and 3.25, in one place. Internal: not installed.
  */
 #ifndef tautline_PetscCompatibility_h
 #define tautline_PetscCompatibility_h
@@ -13,7 +12,7 @@
 
 namespace tautline
 {
-/// The names of two reasons; those before 3.24 are deprecated since.
+/// The names of two reasons; the names before 3.24 have been deprecated since.
 #if PETSC_VERSION_GE(3, 24, 0)
 constexpr KSPConvergedReason ConvergedRelativeNormal = KSP_CONVERGED_RTOL_NORMAL_EQUATIONS;
 constexpr KSPConvergedReason ConvergedAbsoluteNormal = KSP_CONVERGED_ATOL_NORMAL_EQUATIONS;
@@ -35,10 +34,10 @@ using ContextDestructor =
   ContextDestructorOf<std::remove_pointer_t<decltype(&KSPGetAndClearConvergenceTest)>>::Type;
 
 /**
- * @brief Calls a destructor of a context.
+ * @brief Calls the destructor of a context.
  *
- * It takes the address of the context since 3.24, where its argument is void** or another name of
- * void*; before, the context itself. With the wrong one of both the call compiles and crashes.
+ * Since 3.24, it takes the address of the context, with an argument of type void** or an alias of
+ * void*; before, the context itself. With the wrong choice, the call compiles and crashes.
  */
 template <class Argument>
 PetscErrorCode destroyContext(PetscErrorCode (*destroy)(Argument), void*& context)
@@ -61,8 +60,8 @@ PetscErrorCode destroyContext(PetscErrorCode (*destroy)(Argument), void*& contex
 /**
  * @brief Lifts MINRES's bound on the length of the solution.
  *
- * Since 3.19 the method ends at 6.7e7 and reports convergence, which is wrong in units of
- * nanometres. Options of the user that are read later set the bound again.
+ * Since 3.19, the method ends at 6.7e7 and reports convergence, which is wrong in units of
+ * nanometers. User options that are read later override this bound.
  */
 inline PetscErrorCode liftMinresRadius([[maybe_unused]] KSP solver)
 {

@@ -15,8 +15,7 @@ namespace
 {
 constexpr Index None = -1;
 
-/// The first row with something wrong: an entry that is not finite, or columns out of order or
-/// range.
+/// The first invalid row: it has an entry that is not finite, or columns out of order or range.
 Index firstBadRow(const SparseMatrix& matrix)
 {
   for (Index row = 0; row < matrix.size; ++row)
@@ -35,7 +34,7 @@ Index firstBadRow(const SparseMatrix& matrix)
   return None;
 }
 
-/// Options that something reads only when an inner solver is set up.
+/// Options that are read only when an inner solver is set up.
 bool readLater(const std::string& name, bool afterSetUp)
 {
   for (const char* prefix : { "-sub_", "-mg_", "-mat_", "-redundant_", "-telescope_",
@@ -56,7 +55,7 @@ PetscOptionSet::PetscOptionSet(const std::string& text)
 {
   const std::vector<PetscOption> options = parsePetscOptions(text);
   petsc(PetscOptionsCreate(this->Database.out()));
-  // One by one: PETSc would act upon some names in a whole text.
+  // One by one: PETSc would act on some names in a combined string.
   for (const PetscOption& option : options)
   {
     this->Given.push_back(option.name);
@@ -107,9 +106,8 @@ void PetscOptionSet::rejectUnused(bool afterSetUp) const
   }
   if (!unused.empty())
   {
-    throw Error("PETSc options \"" + this->Text + "\": unknown here, or without effect: " + unused +
-      ". Check the spelling, and that the method or preconditioner it belongs to is the one "
-      "chosen.");
+    throw Error("PETSc options \"" + this->Text + "\": unknown or without effect: " + unused +
+      ". Check the spelling and whether the corresponding method or preconditioner is selected.");
   }
 }
 
@@ -137,8 +135,8 @@ std::string chooseFactorization(PC preconditioner, const LinearSystem& system, i
   const MatFactorType kind = system.symmetric ? MAT_FACTOR_CHOLESKY : MAT_FACTOR_LU;
   const char* type = ranks > 1 ? MATMPIAIJ : MATSEQAIJ;
   petsc(PCSetType(preconditioner, system.symmetric ? PCCHOLESKY : PCLU));
-  // CHOLMOD is the fastest but takes no pivots but positive ones; MUMPS takes any matrix and any
-  // number of ranks.
+  // CHOLMOD is the fastest but requires positive pivots; MUMPS supports any matrix and any number
+  // of ranks.
   for (const char* package :
     { MATSOLVERCHOLMOD, MATSOLVERMUMPS, MATSOLVERSUPERLU_DIST, MATSOLVERPETSC })
   {
@@ -149,8 +147,7 @@ std::string chooseFactorization(PC preconditioner, const LinearSystem& system, i
     if (fits && there && takesType)
     {
       petsc(PCFactorSetMatSolverType(preconditioner, package));
-      // Its warnings go to the console; that the matrix is not definite comes back as an error,
-      // too.
+      // Its warnings go to the console; an indefinite matrix is reported as an error anyway.
       options.setDefault("-" + prefix + "mat_cholmod_print", "0");
       return package;
     }
@@ -200,7 +197,7 @@ bool PetscSystem::anywhere(bool condition) const
   return this->Ranks > 1 ? onAnyRank(this->Comm, condition) : condition;
 }
 
-/// What is wrong with the system, or "".
+/// A description of the error in the system, or "".
 std::string PetscSystem::complaint() const
 {
   const SparseMatrix* matrix = this->System.matrix;
@@ -209,7 +206,7 @@ std::string PetscSystem::complaint() const
                                          : 0;
   if (!matrix || unknowns == 0)
   {
-    return "The linear system has no unknowns: nothing is free to be solved for.";
+    return "The linear system has no unknowns: there is nothing to solve for.";
   }
   const int block = this->System.blockSize;
   if (block < 1 || matrix->size % block != 0)
@@ -227,7 +224,7 @@ std::string PetscSystem::complaint() const
   if (matrix->offsets.size() != static_cast<std::size_t>(matrix->size) + 1 ||
     matrix->offsets.back() != matrix->nonzeros() || matrix->values.size() != entries)
   {
-    return "The matrix of the linear system is not complete: its offsets, columns and values "
+    return "The matrix of the linear system is incomplete: its offsets, columns and values "
            "differ in size.";
   }
   const Index limit = std::numeric_limits<PetscInt>::max();
@@ -249,7 +246,8 @@ void PetscSystem::borrowMatrix(bool copy)
   const SparseMatrix& source = *this->System.matrix;
   const auto size = static_cast<PetscInt>(source.size);
   this->Offsets.assign(source.offsets.begin(), source.offsets.end());
-  // PETSc only reads what it is lent here; with 64-bit integers it cannot borrow the columns.
+  // PETSc only reads the arrays lent to it here; with 64-bit integers, it cannot use the columns
+  // directly.
   auto* columns = reinterpret_cast<PetscInt*>(const_cast<std::int32_t*>(source.columns.data()));
   if (sizeof(PetscInt) != sizeof(std::int32_t))
   {
@@ -288,8 +286,7 @@ void PetscSystem::distributeMatrix()
     this->insertRows(rowOf);
     return;
   }
-  // Every rank contributes the entries of its cells, also to rows of other ranks; PETSc sums them
-  // up.
+  // Every rank contributes the entries of its cells, also to rows of other ranks; PETSc sums them.
   std::vector<PetscInt> rows(source.columns.size()), columns(source.columns.size());
   for (Index row = 0; row < source.size; ++row)
   {
@@ -304,8 +301,8 @@ void PetscSystem::distributeMatrix()
   petsc(MatSetValuesCOO(this->Matrix, source.values.data(), ADD_VALUES));
 }
 
-/// Rows that are whole on one rank: without the arrays, twice as large as the matrix, by which
-/// PETSc adds contributions up.
+/// Rows that are complete on one rank do not need the arrays, twice as large as the matrix, that
+/// PETSc uses to sum contributions.
 void PetscSystem::insertRows(const std::vector<PetscInt>& rowOf)
 {
   const SparseMatrix& source = *this->System.matrix;
@@ -314,8 +311,8 @@ void PetscSystem::insertRows(const std::vector<PetscInt>& rowOf)
   const auto owned = static_cast<PetscInt>(block * numbering.ownedRows());
   const auto all = static_cast<PetscInt>(block * numbering.globalSize());
   const auto first = static_cast<PetscInt>(block * numbering.firstRow());
-  // Entries of each row in columns of its owner and of others; where the row goes to another rank,
-  // as many in both.
+  // The numbers of entries of each row in columns of its owner and of others; for a row sent to
+  // another rank, the same number in both.
   const std::size_t points = numbering.rows().size();
   std::vector<double> counts(2 * static_cast<std::size_t>(block) * points, 0.0);
   const auto countsOf = [&](Index row)
@@ -419,7 +416,7 @@ void PetscSystem::copyIn(const double* values, Vec rows) const
   {
     std::copy_n(values, this->localSize(), target);
   }
-  // The rows a rank owns are in the order of its points.
+  // The rows owned by a rank are in the order of its points.
   const int block = this->System.blockSize;
   for (std::size_t i = 0; i < this->Points.size(); ++i)
   {
@@ -442,7 +439,7 @@ void PetscSystem::copyOut(Vec rows, double* values) const
   }
   else
   {
-    // Values that other ranks own count as 0 in the sum over the ranks that have the point.
+    // Values owned by other ranks are 0 in the sum over the ranks that have the point.
     const PointNumbering& numbering = *this->System.numbering;
     const auto block = static_cast<std::size_t>(this->System.blockSize);
     std::vector<double> all(block * numbering.rows().size(), 0.0);

@@ -4,7 +4,7 @@
  * @brief PETSc's matrix of a linear system, how this rank's unknowns map to it, and options.
  * Internal: not installed.
  *
- * Whoever uses these objects holds a PetscScope of their database.
+ * Users of these objects must hold a PetscScope of their database.
  */
 #ifndef tautline_PetscObjects_h
 #define tautline_PetscObjects_h
@@ -19,8 +19,8 @@ class PetscSystem
 {
 public:
   /**
-   * @brief Throws Error as LinearSolver's constructor does; within a PetscScope.
-   * @param copy on one rank: whether PETSc gets entries of its own, because it is going to change
+   * @brief Throws Error as LinearSolver's constructor does. Must be called within a PetscScope.
+   * @param copy on one rank: whether PETSc gets its own copy of the entries because it will change
    * them
    */
   explicit PetscSystem(const LinearSystem& system, bool copy = false);
@@ -28,13 +28,13 @@ public:
   MPI_Comm communicator() const { return this->Comm; }
   int ranks() const { return this->Ranks; }
   Mat matrix() const { return this->Matrix; }
-  /// Unknowns of this rank, shared ones too.
+  /// Unknowns of this rank, including shared ones.
   Index localSize() const { return this->System.matrix->size; }
-  /// Whether a condition holds on some rank.
+  /// Whether a condition holds on any rank.
   bool anywhere(bool condition) const;
 
-  /// A vector of rows, and back: contributions are added up, values come from and go to all who
-  /// share them.
+  /// Conversions to a vector of rows and back: contributions are summed; values are exchanged
+  /// between all ranks that share them.
   PetscVector createVector() const;
   void add(const double* contributions, Vec rows) const;
   void copyIn(const double* values, Vec rows) const;
@@ -50,29 +50,29 @@ private:
   LinearSystem System;
   MPI_Comm Comm = MPI_COMM_SELF;
   int Ranks = 1;
-  std::vector<Index> Points; // of several ranks: this rank's points with a row, in increasing order
-  std::vector<PetscInt> Offsets, Columns; // what PETSc cannot borrow
+  std::vector<Index> Points; // on several ranks: this rank's points with a row, in increasing order
+  std::vector<PetscInt> Offsets, Columns; // arrays that PETSc cannot use directly
   PetscMatrix Matrix;
 };
 
-/// The options of one solver: a database of its own, and which of them a user gave.
+/// The options of one solver: its own database, and which of them the user specified.
 class PetscOptionSet
 {
 public:
-  /// Throws Error for text that is not a list of permitted options (PetscOptionRules.h).
+  /// Throws Error if the text is not a list of permitted options (PetscOptionRules.h).
   explicit PetscOptionSet(const std::string& text);
   PetscOptions database() const { return this->Database; }
   bool has(const std::string& name) const;
-  /// Whether some option makes PETSc change the matrix it is given.
+  /// Whether an option makes PETSc change the matrix passed to it.
   bool changesMatrix() const;
-  /// Sets one of Tautline's options, unless the user gave it.
+  /// Sets one of Tautline's options unless the user specified it.
   void setDefault(const std::string& name, const std::string& value);
   /**
-   * @brief Throws Error that names the options nothing has read. Before the set-up those that only
-   * an inner solver or a viewer reads are not yet missed.
+   * @brief Throws Error with the names of options that have not been read. Before the setup,
+   * options that only an inner solver or a viewer reads are not yet reported.
    */
   void rejectUnused(bool afterSetUp) const;
-  /// explainPetsc(); if the user gave options, with these and the error as it is.
+  /// explainPetsc(); if the user specified options, with these and the original error.
   std::string explain(const PetscError& error, const std::string& subject) const;
   /// Runs a call that reads options; an error then quotes their text.
   template <class Call>
@@ -97,8 +97,9 @@ private:
 };
 
 /**
- * @brief Makes a preconditioner a direct solver for a system; the name of the package.
- * @param prefix of the preconditioner's options, "" or "st_"
+ * @brief Configures a preconditioner as a direct solver for a system; returns the name of the
+ * package.
+ * @param prefix prefix of the preconditioner's options, "" or "st_"
  */
 std::string chooseFactorization(PC preconditioner, const LinearSystem& system, int ranks,
   PetscOptionSet& options, const std::string& prefix = "");

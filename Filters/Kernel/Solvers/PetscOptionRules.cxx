@@ -20,22 +20,22 @@ enum class Kind
   Flag,    // true or false; no value is true
   Integer, // in a range
   Real,    // in a range
-  Reals,   // several, with commas between
+  Reals,   // several, separated by commas
   Word     // one of a list
 };
 
-/// One option: its name, and what its value may be.
+/// One option: its name and its permitted values.
 struct Rule
 {
   const char* name;
   Kind kind;
   double low, high;
-  const char* words; // with spaces between
+  const char* words; // separated by spaces
 };
 
 constexpr double Infinite = std::numeric_limits<double>::infinity();
 constexpr double LargestInteger = std::numeric_limits<int>::max();
-// Limits of what can make a single step take for ever or exhaust the memory.
+// Limits on values that could make a single step take forever or exhaust the memory.
 constexpr double InnerIterations = 10000, Sweeps = 100, Basis = 10000, Levels = 50;
 
 constexpr Rule flag(const char* name)
@@ -64,7 +64,7 @@ constexpr const char* Relaxations =
   "symmetric-SOR/Jacobi l1scaled-SOR/Jacobi Gaussian-elimination l1-Gauss-Seidel "
   "backward-l1-Gauss-Seidel Chebyshev FCF-Jacobi l1scaled-Jacobi";
 
-// The order is that of the names, by family.
+// Ordered by family, then by name.
 constexpr Rule rules[] = {
   // Krylov methods
   word("ksp_type",
@@ -238,7 +238,7 @@ constexpr Rule rules[] = {
   real("pc_hypre_pilut_tol", 0, 1),
   integer("pc_hypre_pilut_factorrowsize", 1, 10000),
 
-  // the direct solver MUMPS: ordering, pivots, refinement, memory; not its output and its files
+  // the direct solver MUMPS: ordering, pivots, refinement, and memory, but not output and files
   integer("mat_mumps_icntl_6", 0, 7),
   integer("mat_mumps_icntl_7", 0, 7),
   integer("mat_mumps_icntl_8", -2, 77),
@@ -262,8 +262,8 @@ constexpr Rule rules[] = {
   real("eps_krylovschur_restart", 0.1, 0.9),
 };
 
-// Inner solvers, by the beginning of their options: smoothers and coarse solver of multigrid, those
-// of blocks, fields, subdomains and redundant copies, and the one of a spectral transformation.
+// Prefixes of the options of inner solvers: smoothers and the coarse solver of multigrid; solvers
+// of blocks, fields, subdomains, and redundant copies; the solver of a spectral transformation.
 constexpr const char* prefixes[] = { "mg_levels_", "mg_coarse_", "sub_", "fieldsplit_",
   "redundant_", "telescope_", "ksp_", "st_", "esteig_", "gamg_est_", "pc_gamg_esteig_" };
 
@@ -298,7 +298,7 @@ const Rule* ruleOf(const std::string& name)
   return nullptr;
 }
 
-/// What is left of a name after a prefix, with the number of a level in "mg_levels_2_"; or "".
+/// The rest of a name after a prefix, including the level number as in "mg_levels_2_"; or "".
 std::string without(const std::string& prefix, const std::string& name)
 {
   if (name.rfind(prefix, 0) != 0)
@@ -317,7 +317,7 @@ std::string without(const std::string& prefix, const std::string& name)
 /// The rule of an option in lower case, without the hyphen; null if it is not permitted.
 const Rule* find(const std::string& name, int& depth)
 {
-  constexpr int deepest = 4; // solvers inside solvers
+  constexpr int deepest = 4; // nesting depth of solvers
   if (const Rule* rule = ruleOf(name))
   {
     return rule;
@@ -339,7 +339,7 @@ const Rule* find(const std::string& name, int& depth)
 }
 
 //------------------------------------------------------------------------------
-/// The number of characters to insert, drop or replace (Levenshtein).
+/// The number of characters to insert, delete, or replace (Levenshtein).
 std::size_t distance(const std::string& a, const std::string& b)
 {
   std::vector<std::size_t> row(b.size() + 1);
@@ -369,7 +369,8 @@ std::string listed(const std::vector<std::string>& names, const std::string& bef
   return text;
 }
 
-/// The permitted names most like one that is not; if none is like it, those of its family.
+/// The permitted names most similar to one that is not permitted; if none is similar, the names of
+/// its family.
 std::string alternatives(const std::string& name)
 {
   constexpr std::size_t near = 3;
@@ -394,18 +395,17 @@ std::string alternatives(const std::string& name)
     }
   }
   return !similar.empty() ? " Did you mean " + listed(similar, "-") + "?"
-    : !family.empty()     ? " Permitted are " + listed(family, "-") + "."
+    : !family.empty()     ? " Permitted options: " + listed(family, "-") + "."
                           : "";
 }
 
 [[noreturn]] void refuse(const std::string& option)
 {
   throw Error("The PETSc option " + option +
-    " is not permitted. Permitted are options that choose and tune Krylov methods (-ksp_...), "
+    " is not permitted. Permitted options choose and tune Krylov methods (-ksp_...), "
     "preconditioners (-pc_..., of multigrid -mg_levels_... and -mg_coarse_..., of blocks "
-    "-sub_..., of the components of a displacement -fieldsplit_0_...), MUMPS (-mat_mumps_...) and "
-    "eigensolvers (-eps_..., -st_...), and neither read, "
-    "write nor display anything." +
+    "-sub_..., of the components of a displacement -fieldsplit_0_...), MUMPS (-mat_mumps_...) "
+    "and eigensolvers (-eps_..., -st_...), and do not read, write, or display anything." +
     alternatives(lower(option.substr(1))));
 }
 
@@ -435,7 +435,7 @@ bool isNumber(const std::string& text, bool whole, double& number)
   return *end == '\0' && std::isfinite(number);
 }
 
-/// Why a value is not possible, or "".
+/// The reason why a value is not permitted, or "".
 std::string complaint(const Rule& rule, const std::string& value)
 {
   const auto inRange = [&](double number) { return number >= rule.low && number <= rule.high; };
@@ -458,10 +458,10 @@ std::string complaint(const Rule& rule, const std::string& value)
       {
         if (!isNumber(part, false, number) || !inRange(number))
         {
-          return "numbers with commas between them, each " + range(rule);
+          return "numbers separated by commas, each " + range(rule);
         }
       }
-      return value.empty() ? "numbers with commas between them" : "";
+      return value.empty() ? "numbers separated by commas" : "";
     case Kind::Word:
       break;
   }
@@ -484,7 +484,7 @@ std::vector<PetscOption> parsePetscOptions(const std::string& text)
   std::vector<PetscOption> options;
   std::istringstream stream(text);
   std::string word;
-  bool named = false; // the last word was a name
+  bool named = false; // whether the last word was a name
   while (stream >> word)
   {
     if (isName(word))
@@ -513,10 +513,11 @@ std::vector<PetscOption> parsePetscOptions(const std::string& text)
     Rule inner = *rule;
     if (depth > 0 && std::string(rule->name) == "ksp_max_it")
     {
-      inner.high = InnerIterations; // the time limit is checked between those of the outer solver
+      // the time limit is checked between iterations of the outer solver
+      inner.high = InnerIterations;
     }
-    // Chebyshev's method needs a matrix with positive eigenvalues, which smoothers have; as the
-    // solver of an indefinite system it crashes.
+    // Chebyshev's method requires positive eigenvalues, which is satisfied for smoothers; as the
+    // solver of an indefinite system, it crashes.
     const bool smoother =
       depth > 0 && std::string(rule->name) == "ksp_type" && lower(option.value) == "chebyshev";
     const std::string possible = smoother ? "" : complaint(inner, option.value);
@@ -524,7 +525,7 @@ std::vector<PetscOption> parsePetscOptions(const std::string& text)
     {
       throw Error("The PETSc option " + option.name +
         (option.value.empty() ? " has no value" : " cannot be \"" + option.value + "\"") +
-        ": possible is " + possible + ".");
+        "; permitted: " + possible + ".");
     }
   }
   return options;

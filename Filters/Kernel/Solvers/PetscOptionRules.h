@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PetscOptionRules.h
- * @brief Which options of PETSc a user may give as text.
- * Internal: not installed.
+ * @brief The PETSc options that a user may specify as text. Internal: not installed.
  *
- * The text is read here, before PETSc sees it. Permitted are the options that choose and tune
- * Krylov methods, preconditioners and eigensolvers: those of a table, for the solver itself or,
- * with a prefix, for one inside it. Everything else is refused: what displays or monitors (it can
- * write files), what reads files (-options_file), loads code (-pc_type python, shell, hpddm),
- * needs data that only a program can give (-pc_type mg, composite), stops the process or attaches
- * a debugger, or is about PETSc as a whole. Values are checked against a type, a range or a list,
- * so that none can be the name of a file. -pc_type fieldsplit splits by component only
- * (-fieldsplit_0_... is the solver of the first): other splits need index sets.
+ * The text is parsed here, before it is passed to PETSc. Options that choose and tune Krylov
+ * methods, preconditioners, and eigensolvers are permitted if they are in a table, for the solver
+ * itself or, with a prefix, for an inner solver. All other options are rejected: options that
+ * display or monitor (they can write files), read files (-options_file), load code (-pc_type
+ * python, shell, hpddm), need data that only a program can provide (-pc_type mg, composite), stop
+ * the process, attach a debugger, or affect PETSc as a whole. Values are checked against a type, a
+ * range or a list, so that no value can be a file name. -pc_type fieldsplit splits by component
+ * only (-fieldsplit_0_... is the solver of the first): other splits need index sets.
  */
 #ifndef tautline_PetscOptionRules_h
 #define tautline_PetscOptionRules_h
@@ -23,7 +22,7 @@
 
 namespace tautline
 {
-/// An option as PETSc takes it.
+/// An option in the form that PETSc expects.
 struct PetscOption
 {
   std::string name;  ///< with the hyphen and prefixes: "-mg_levels_pc_type"
@@ -33,15 +32,15 @@ struct PetscOption
 /**
  * @brief The options of a text "-name value -name value ...", checked.
  *
- * Throws Error that names the first option which is not permitted, with those of similar names, or
- * the value that is not possible, with those that are.
+ * Throws Error with the first option that is not permitted and similar names, or with the value
+ * that is not permitted and the permitted values.
  */
 TAUTLINE_SOLVERS_EXPORT std::vector<PetscOption> parsePetscOptions(const std::string& text);
 
-/// The names in the table, without hyphen and prefix, in alphabetical order.
+/// The names in the table, without hyphens and prefixes, in alphabetical order.
 TAUTLINE_SOLVERS_EXPORT std::vector<std::string> permittedPetscOptions();
 
-/// Values that are possible for one of them whose values are words ("pc_type"); else empty.
+/// The permitted values of an option whose values are words ("pc_type"); otherwise empty.
 TAUTLINE_SOLVERS_EXPORT std::vector<std::string> permittedPetscValues(const std::string& name);
 }
 #endif

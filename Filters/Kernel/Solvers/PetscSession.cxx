@@ -21,24 +21,24 @@ std::recursive_mutex& sessionMutex()
   return *mutex;
 }
 
-/// What the error handler has collected; guarded by the mutex.
+/// The messages collected by the error handler; guarded by the mutex.
 std::string& collected()
 {
   static auto* text = new std::string;
   return *text;
 }
 
-/// How often PETSc has been shut down, and whether a callback is registered for the next time.
+/// How often PETSc has been shut down, and whether a callback is registered for the next shutdown.
 int generation = 0;
 bool watched = false;
 
-/// Scopes of this thread.
+/// The number of nested scopes of this thread.
 thread_local int depth = 0;
 
-/// Whether Tautline, not the host, has started MPI and PETSc.
+/// Whether Tautline, rather than the host, has started MPI and PETSc.
 std::atomic<bool> ownMpi{ false }, ownPetsc{ false };
 
-/// What is to be destroyed when PETSc is free; guarded by a mutex of its own.
+/// Objects to destroy when PETSc is no longer in use; guarded by a separate mutex.
 struct PutOff
 {
   std::mutex Mutex;
@@ -66,7 +66,7 @@ bool mpiFinalized()
   return finalized != 0;
 }
 
-/// MPI started here ends with the process: mpirun would report a crash otherwise.
+/// MPI started here is finalized at process exit: otherwise, mpirun would report a crash.
 void finalizeMpi()
 {
   if (!mpiFinalized())
@@ -75,7 +75,7 @@ void finalizeMpi()
   }
 }
 
-/// Keeps the innermost message, which names the cause; neither prints nor terminates.
+/// Keeps the innermost message, which states the cause; does not print or terminate.
 PetscErrorCode collectError(MPI_Comm, int, const char* function, const char*, PetscErrorCode code,
   PetscErrorType type, const char* message, void*)
 {
@@ -102,10 +102,11 @@ void ensureMpi()
   MPI_Initialized(&initialized);
   if (!initialized)
   {
-    // Open MPI ends the process where memory does not suffice for its threads and shared segments.
+    // Open MPI terminates the process if there is not enough memory for its threads and shared
+    // segments.
     constexpr double mpiAndPetsc = 256 * 1048576.0; // address space, measured
     requireMemory(mpiAndPetsc, "the start of MPI and PETSc",
-      "raise the limit on the memory of the process, or end other programs");
+      "raise the memory limit of the process, or close other programs");
     int provided = 0;
     if (MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &provided) != MPI_SUCCESS)
     {
@@ -125,14 +126,15 @@ void ensurePetsc()
   {
     return;
   }
-  // On a communicator of one rank nothing is collective: a filter may run on one rank alone. PETSc
-  // gets arguments of its own, or it would read .petscrc; those of the program are not passed on.
+  // On a communicator with one rank, nothing is collective: a filter may run on a single rank.
+  // PETSc gets its own arguments, because it would read .petscrc otherwise; the program's arguments
+  // are not passed on.
   static char program[] = "tautline", noFiles[] = "-skip_petscrc",
               noSignals[] = "-no_signal_handler";
   static char* list[] = { program, noFiles, noSignals, nullptr };
   static char** arguments = list;
   static int count = 3;
-  const MPI_Comm chosen = PETSC_COMM_WORLD; // by other code that is about to initialize PETSc
+  const MPI_Comm chosen = PETSC_COMM_WORLD; // set by other code that is about to initialize PETSc
   const MPI_Comm world = chosen == MPI_COMM_NULL ? MPI_COMM_WORLD : chosen;
   PETSC_COMM_WORLD = MPI_COMM_SELF;
   const PetscErrorCode code = PetscInitialize(&count, &arguments, nullptr, nullptr);
@@ -141,7 +143,7 @@ void ensurePetsc()
   {
     throw Error("PETSc cannot be initialized (error " + std::to_string(code) + ").");
   }
-  // Other users of PETSc find what they would have got.
+  // Other users of PETSc get the values they would have had.
   MPI_Comm_rank(world, &PetscGlobalRank);
   MPI_Comm_size(world, &PetscGlobalSize);
   ownPetsc = true;
@@ -149,7 +151,7 @@ void ensurePetsc()
   PetscOptionsClearValue(nullptr, noSignals);
 }
 
-/// Within a scope.
+/// Must be called within a scope.
 void destroyPutOff()
 {
   decltype(PutOff::Objects) objects;
@@ -216,7 +218,7 @@ PetscScope::~PetscScope()
     destroyPutOff();
   }
   --depth;
-  // Another user of PETSc may have ended it meanwhile, from a callback.
+  // In the meantime, another user of PETSc may have finalized it from a callback.
   if (petscUsable() && this->Generation == generation)
   {
     PetscOptionsPop();
@@ -242,15 +244,16 @@ std::string explainPetsc(const PetscError& error, const std::string& subject)
         ": the matrix is singular, or not positive definite. Check that enough points are fixed "
         "and that the coefficients are positive, or choose Preconditioner = Jacobi or BoomerAMG.";
     case PETSC_ERR_MEM:
-      return "The memory does not suffice with " + subject +
+      return "Insufficient memory with " + subject +
         ": choose Preconditioner = Jacobi or SSOR, or a coarser mesh.";
     case PETSC_ERR_MISSING_FACTOR:
-      return "No package of this PETSc factorizes this matrix with " + subject +
-        ": choose another preconditioner or package; Solver = direct takes one that is there.";
+      return "No package of this PETSc can factorize this matrix with " + subject +
+        ": choose another preconditioner or package; Solver = direct selects an available "
+        "package.";
     default:
       break;
   }
-  // Sentences that name an option are advice on options that nobody has given.
+  // Sentences with an option are advice on options that the user has not specified.
   static const std::regex advice("[^.;:]*\\s-[A-Za-z]+_[A-Za-z_]+[^.;]*[.;]?");
   return subject + " failed: " + std::regex_replace(std::string(error.what()), advice, "") +
     " Choose another preconditioner or solver.";
@@ -265,7 +268,7 @@ bool petscWatchable(const WatchLimits& limits)
   }
   if (!petscUsable())
   {
-    const PetscScope scope; // starts MPI in this thread, which has to end it
+    const PetscScope scope; // starts MPI in this thread, which must also finalize it
   }
   int level = MPI_THREAD_SINGLE;
   const int needed = ownMpi ? MPI_THREAD_SERIALIZED : MPI_THREAD_MULTIPLE;
@@ -284,7 +287,8 @@ WatchResult watchPetsc(const WatchLimits& limits, const std::function<void(Watch
 
 void destroyInSession(void* object, void (*destroy)(void*))
 {
-  // Once PETSc has gone, nothing of it is left to destroy, and it must not be started for that.
+  // After PETSc was shut down, there is nothing left to destroy, and it must not be restarted for
+  // that.
   if (!petscUsable())
   {
     destroy(object);

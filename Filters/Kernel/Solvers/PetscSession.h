@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PetscSession.h
- * @brief PETSc inside a process that may use it, too: initialized at first use, one thread at a
- * time, with options and an error handler that leave those of other users alone.
- * Internal: not installed.
+ * @brief PETSc inside a process that may also use it: initialized at first use, used by one thread
+ * at a time, with separate options and error handler that do not affect other users. Internal: not
+ * installed.
  */
 #ifndef tautline_PetscSession_h
 #define tautline_PetscSession_h
@@ -21,7 +21,8 @@
 
 namespace tautline
 {
-/// A failed call of PETSc or SLEPc, with its text; OwnError: Tautline's, for the user as it is.
+/// A failed call of PETSc or SLEPc, with its text; OwnError: an error of Tautline, passed to the
+/// user unchanged.
 constexpr PetscErrorCode OwnError = -1;
 class PetscError : public Error
 {
@@ -38,37 +39,38 @@ private:
 };
 
 /**
- * @brief An error of PETSc in terms of what the user chose, with a remedy.
+ * @brief A PETSc error in terms of the user's choices, with a remedy.
  * @param subject the choice: "Preconditioner = ILU(0)"
  *
- * Advice to set options of PETSc is left out.
+ * Advice to set PETSc options is omitted.
  */
 std::string explainPetsc(const PetscError& error, const std::string& subject);
 
-/// MPI and PETSc are there and not yet shut down, so that objects can be destroyed.
+/// Whether MPI and PETSc are initialized and not yet shut down, so that objects can be destroyed.
 bool petscUsable();
 
-/// Counts how often PETSc has been shut down: what was made before is lost, memory and all.
+/// Counts how often PETSc has been shut down: objects created before are lost, including their
+/// memory.
 int petscGeneration();
 
-/// Initializes SLEPc if that has not been done; within a PetscScope.
+/// Initializes SLEPc if necessary. Must be called within a PetscScope.
 void ensureSlepc();
 
 /**
  * @class tautline::PetscScope
- * @brief Every use of PETSc happens within one.
+ * @brief Required around every use of PETSc.
  *
- * The first one of the process initializes PETSc (and MPI if it is not), not collectively, without
- * signal handler, without the program's arguments and without .petscrc (of the working directory
- * or of the home directory). PETSC_OPTIONS of the environment is read as in any program with PETSc;
- * of it only what is about PETSc as a whole has an effect here, not options of solvers. While a
- * scope lives, no other thread of Tautline uses PETSc, options are looked up in `database` alone,
- * and errors are collected rather than printed. Scopes nest.
+ * The first scope of the process initializes PETSc (and MPI if necessary), not collectively,
+ * without a signal handler, without the program's arguments, and without .petscrc (in the working
+ * directory or the home directory). The environment variable PETSC_OPTIONS is read as in any
+ * program with PETSc, but only options that affect PETSc as a whole take effect here, not options
+ * of solvers. While a scope exists, no other thread of Tautline uses PETSc, options are looked up
+ * in `database` alone, and errors are collected rather than printed. Scopes can be nested.
  */
 class PetscScope
 {
 public:
-  /// Throws Error when MPI has been shut down already. A null database: an empty one.
+  /// Throws Error if MPI has already been shut down. A null database means an empty one.
   explicit PetscScope(PetscOptions database = nullptr);
   ~PetscScope();
   PetscScope(const PetscScope&) = delete;
@@ -78,36 +80,36 @@ private:
   std::unique_lock<std::recursive_mutex> Lock;
   PetscOptions Own = nullptr;
   int Generation = 0;
-  std::string Outer; // what was collected outside
+  std::string Outer; // messages collected outside this scope
 };
 
 /**
- * @brief Runs work that uses PETSc, and nothing of whose time can be limited, under limits.
+ * @brief Runs work that uses PETSc and cannot be interrupted, under limits.
  *
- * Where petscWatchable() holds, the watchdog's thread does it, and `work` gets the object for its
- * calls back; else this thread does it, `work` gets null, the limits do not apply, and the result
- * is Finished. The work begins its own PetscScope.
+ * If petscWatchable() returns true, the watchdog's thread runs the work, and `work` receives the
+ * object for its callbacks; otherwise this thread runs it, `work` receives null, the limits do not
+ * apply, and the result is Finished. The work must create its own PetscScope.
  */
 WatchResult watchPetsc(const WatchLimits& limits, const std::function<void(WatchedWork*)>& work);
 
-/// The error where a limit is reached before the work could begin.
+/// The error if a limit is reached before the work could begin.
 constexpr const char* BusyMessage =
-  "An earlier computation that was given up at its limit still occupies PETSc: wait until it has "
-  "ended, or restart the program.";
+  "An earlier computation that was abandoned at its limit still occupies PETSc: wait until it "
+  "has ended, or restart the program.";
 
 /**
  * @brief Whether watchPetsc() uses the watchdog's thread.
  *
- * It does if there are limits and if Tautline has started PETSc (else the host may use it beside
- * abandoned work), with MPI started by Tautline as MPI_THREAD_SERIALIZED or by the host as
- * MPI_THREAD_MULTIPLE (the host may call it beside abandoned work). It does not within a
- * PetscScope. pvserver, pvbatch and programs that call MPI_Init() have a lower level: there a limit
- * is checked after each set-up.
+ * It does if there are limits and Tautline has started PETSc (otherwise the host may use it
+ * concurrently with abandoned work), with MPI started by Tautline as MPI_THREAD_SERIALIZED or by
+ * the host as MPI_THREAD_MULTIPLE (the host may call it concurrently with abandoned work). It does
+ * not within a PetscScope. pvserver, pvbatch, and programs that call MPI_Init() have a lower level:
+ * there, a limit is checked after each setup.
  */
 bool petscWatchable(const WatchLimits& limits);
 
-/// Destroys what owns objects of PETSc within a PetscScope; while another thread uses PETSc, that
-/// is put off until it has finished.
+/// Destroys an owner of PETSc objects within a PetscScope; while another thread uses PETSc, this is
+/// deferred until it has finished.
 void destroyInSession(void* object, void (*destroy)(void*));
 
 /// destroyInSession() as the deleter of a pointer.
@@ -120,7 +122,7 @@ struct PetscDelete
   }
 };
 
-/// The message of PETSc on the last failed call in this scope.
+/// PETSc's message for the last failed call in this scope.
 const std::string& petscMessage();
 
 /// Throws PetscError unless the code is 0.
@@ -132,11 +134,11 @@ inline void petsc(PetscErrorCode code)
   }
 }
 
-/// Keeps the address of an object that cannot be destroyed, so that it does not count as lost.
+/// Keeps the address of an object that cannot be destroyed, so that it is not reported as a leak.
 void keepForever(void* object);
 
-/// Owns a PETSc object. Its destructor must run within a PetscScope; it does nothing once PETSc has
-/// gone.
+/// Owns a PETSc object. Its destructor must run within a PetscScope; it does nothing after PETSc
+/// was shut down.
 template <class Object, PetscErrorCode (*Destroy)(Object*)>
 class PetscHandle
 {
@@ -154,14 +156,14 @@ public:
   PetscHandle& operator=(const PetscHandle&) = delete;
 
   operator Object() const { return this->Held; }
-  /// For the function that creates the object.
+  /// The address to pass to the function that creates the object.
   Object* out()
   {
     this->reset();
     this->Generation = petscGeneration();
     return &this->Held;
   }
-  /// Gives up the object without destroying it: it is kept until the process ends.
+  /// Releases the object without destroying it: it is kept until the process ends.
   void leak()
   {
     keepForever(this->Held);

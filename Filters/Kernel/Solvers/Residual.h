@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Residual.h
- * @brief What a vector leaves of a linear system.
- * Internal: not installed.
+ * @brief The residual of a vector in a linear system. Internal: not installed.
  */
 #ifndef tautline_Residual_h
 #define tautline_Residual_h
@@ -13,11 +12,11 @@
 
 namespace tautline
 {
-/// Norms of b and of b - A x; infinite where an entry is not finite.
+/// Norms of b and b - A x; infinite if an entry is not finite.
 struct Residual
 {
   double before = 0.0, after = 0.0;
-  /// |b - A x| / |b|; 0 if b is 0 or something is not finite.
+  /// |b - A x| / |b|; 0 if b is 0 or a value is not finite.
   double relative() const;
 };
 
@@ -28,7 +27,7 @@ double norm2(const std::vector<double>& vector);
 std::vector<double> remainder(
   const SparseMatrix& matrix, const double* b, const double* x, int threads);
 
-/// On one rank, by Tautline's own product.
+/// On one rank, with Tautline's own matrix-vector product.
 Residual residualOf(const SparseMatrix& matrix, const double* b, const double* x, int threads);
 }
 #endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SmallEigenvalues.h
- * @brief Eigenvalues of matrices as small as those of elements.
- * Internal: not installed.
+ * @brief Eigenvalues of small matrices such as element matrices. Internal: not installed.
  */
 #ifndef tautline_SmallEigenvalues_h
 #define tautline_SmallEigenvalues_h
@@ -13,8 +12,8 @@
 namespace tautline
 {
 /**
- * @brief The largest eigenvalue of a symmetric matrix of n rows, which is destroyed, by Jacobi's
- * method.
+ * @brief The largest eigenvalue of a symmetric matrix with n rows, by Jacobi's method; overwrites
+ * the matrix.
  *
  * Source: G. H. Golub, C. F. Van Loan, Matrix Computations, 4th ed., section 8.5.
  */
@@ -30,8 +29,8 @@ inline double largestEigenvalue(double* a, int n)
       for (int q = p + 1; q < n; ++q)
       {
         const double apq = a[n * p + q];
-        // The diagonal of a semidefinite matrix bounds what is beside it; one of an indefinite
-        // matrix takes a few sweeps more.
+        // The diagonal of a semidefinite matrix bounds the off-diagonal entries; an indefinite
+        // matrix takes a few more sweeps.
         if (std::abs(apq) <= small * (std::abs(a[n * p + p]) + std::abs(a[n * q + q])))
         {
           continue;

@@ -42,7 +42,7 @@ const char* fastMultigridOptions()
 
 bool converged(SolveReason reason)
 {
-  // A switch without a default: the compiler reports a reason that is missing here.
+  // A switch without a default: the compiler reports a missing reason.
   switch (reason)
   {
     case SolveReason::RelativeTolerance:
@@ -79,7 +79,7 @@ const char* describe(SolveReason reason)
     case SolveReason::OtherConvergence:
       return "converged by the test of the PETSc options";
     case SolveReason::IterationLimit:
-      return "not converged: the limit of iterations was reached";
+      return "not converged: the iteration limit was reached";
     case SolveReason::IndefinitePreconditioner:
       return "failed: the preconditioner is indefinite; try GMRES or another preconditioner";
     case SolveReason::IndefiniteMatrix:
@@ -87,7 +87,7 @@ const char* describe(SolveReason reason)
     case SolveReason::Breakdown:
       return "failed: the method broke down; try GMRES or another preconditioner";
     case SolveReason::Diverged:
-      return "failed: the residual grew beyond bounds";
+      return "failed: the residual diverged";
     case SolveReason::NotANumber:
       return "failed: a number is infinite or not a number";
     case SolveReason::PreconditionerFailed:
@@ -97,8 +97,8 @@ const char* describe(SolveReason reason)
     case SolveReason::Aborted:
       return "stopped by the user";
     case SolveReason::FalseConvergence:
-      return "not converged: the method stopped, but the residual of the system itself is above "
-             "the tolerance; try another solver or preconditioner, or a smaller tolerance";
+      return "not converged: the method stopped, but the true residual is above the tolerance; "
+             "try another solver or preconditioner, or a lower tolerance";
     case SolveReason::OtherFailure:
       break;
   }

@@ -9,17 +9,17 @@ namespace tautline
 {
 namespace
 {
-/// Calls work(begin, end) for ranges of rows with about as many entries each.
+/// Calls work(begin, end) for ranges of rows with about the same number of entries.
 template <class Work>
 void forEachRowRange(const SparseMatrix& matrix, int threads, const Work& work)
 {
-  constexpr Index entries = 1 << 15; // long enough to hide the scheduling
+  constexpr Index entries = 1 << 15; // large enough to hide the scheduling overhead
   const Index ranges = std::max<Index>(1, std::min(matrix.size, matrix.nonzeros() / entries));
   runChunks(ranges, threads,
     [&](Index range) { work(range * matrix.size / ranges, (range + 1) * matrix.size / ranges); });
 }
 
-/// Where an entry is; -1 if it is not stored.
+/// The position of an entry; -1 if it is not stored.
 Index find(const SparseMatrix& matrix, Index row, Index column)
 {
   const auto begin = matrix.columns.begin() + matrix.offsets[row];
@@ -44,7 +44,8 @@ void SparseMatrix::multiply(const double* x, double* y, int threads) const
     {
       for (Index row = begin; row < end; ++row)
       {
-        // Eight sums, so that additions need not wait for each other; their order is fixed.
+        // Eight independent sums, so that additions do not wait for each other; their order is
+        // fixed.
         double sums[8] = {};
         Index k = this->offsets[row];
         const Index last = this->offsets[row + 1];
@@ -70,8 +71,8 @@ double symmetrize(SparseMatrix& matrix, int threads)
 {
   std::vector<double> difference(matrix.size, 0.0), all(matrix.size, 0.0);
   std::vector<double> mirrored(matrix.values.size());
-  // Rows ascend, so the entries of a column are met from top to bottom: a cursor per row finds each
-  // mirror image.
+  // Rows are visited in ascending order, hence the entries of a column from top to bottom: one
+  // cursor per row finds each transposed entry.
   std::vector<Index> cursor(matrix.offsets.begin(), matrix.offsets.end() - 1);
   for (Index row = 0; row < matrix.size; ++row)
   {

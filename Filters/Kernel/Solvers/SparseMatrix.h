@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SparseMatrix.h
- * @brief A sparse square matrix by compressed rows, and its product with a vector.
+ * @brief A sparse square matrix in compressed row storage, and its product with a vector.
  */
 #ifndef tautline_SparseMatrix_h
 #define tautline_SparseMatrix_h
@@ -23,19 +23,19 @@ struct SparseMatrix
   std::vector<double> values;
 
   Index nonzeros() const { return static_cast<Index>(this->columns.size()); }
-  /// The entry, 0 where none is stored. Takes a binary search.
+  /// The entry, 0 if it is not stored. Uses a binary search.
   TAUTLINE_SOLVERS_EXPORT double at(Index row, Index column) const;
-  /// y = A x. Bitwise the same for any number of threads (0: all cores).
+  /// y = A x. Bitwise identical for any number of threads (0: all cores).
   TAUTLINE_SOLVERS_EXPORT void multiply(const double* x, double* y, int threads = 0) const;
 };
 
 /**
  * @brief Replaces A, whose pattern must be symmetric, by (A + A^T) / 2.
- * @return how unsymmetric it was: the Frobenius norm of (A - A^T) / 2 over that of A
+ * @return the asymmetry: the Frobenius norm of (A - A^T) / 2 over the Frobenius norm of A
  */
 TAUTLINE_SOLVERS_EXPORT double symmetrize(SparseMatrix& matrix, int threads = 0);
 
-/// Drops the entries that are exactly zero off the diagonal.
+/// Removes the off-diagonal entries that are exactly zero.
 TAUTLINE_SOLVERS_EXPORT void dropZeros(SparseMatrix& matrix);
 }
 #endif

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Tridiagonal.h
- * @brief Extreme eigenvalues of symmetric tridiagonal matrices, for methods of Lanczos.
- * Internal: not installed.
+ * @brief Extreme eigenvalues of symmetric tridiagonal matrices, for Lanczos methods. Internal: not
+ * installed.
  */
 #ifndef tautline_Tridiagonal_h
 #define tautline_Tridiagonal_h
@@ -38,7 +38,7 @@ struct Tridiagonal
     return count;
   }
 
-  /// The eigenvalue with `index` ones below it, by bisection between Gershgorin's bounds.
+  /// The eigenvalue with `index` smaller eigenvalues, by bisection between Gershgorin's bounds.
   double eigenvalue(Index index) const
   {
     double low = 1e300, high = -1e300;
@@ -58,19 +58,19 @@ struct Tridiagonal
     return 0.5 * (low + high);
   }
 
-  /// Its eigenvector, of norm 1, by inverse iteration with pivoting.
+  /// The eigenvector, with norm 1, of an eigenvalue, by inverse iteration with pivoting.
   std::vector<double> eigenvector(double value) const
   {
     const std::size_t n = this->diagonal.size();
     std::vector<double> x(n);
     for (std::size_t i = 0; i < n; ++i)
     {
-      x[i] = 1.0 + 0.3 * std::cos(1.7 * static_cast<double>(i)); // no symmetry
+      x[i] = 1.0 + 0.3 * std::cos(1.7 * static_cast<double>(i)); // avoids symmetry
     }
     const double tiny = std::max(1e-300, 1e-15 * std::abs(value));
     for (int turn = 0; turn < 3; ++turn)
     {
-      // Gaussian elimination of the band, with rows exchanged where the entry below is larger.
+      // Gaussian elimination of the band matrix; rows are exchanged if the entry below is larger.
       std::vector<double> a(n), b(n, 0.0), c(n, 0.0);
       double current = this->diagonal[0] - value, next = n > 1 ? this->beside[0] : 0.0;
       for (std::size_t i = 0; i + 1 < n; ++i)
@@ -129,7 +129,7 @@ struct RitzPair
   std::vector<double> vector;
 };
 
-/// @param residual the next entry beside the diagonal
+/// @param residual the next off-diagonal entry
 inline RitzPair ritzPair(const Tridiagonal& t, bool smallest, double residual)
 {
   const auto n = static_cast<Index>(t.diagonal.size());

@@ -25,17 +25,17 @@ namespace
 {
 class Task;
 
-/// The thread and what is shared with it; guarded by the mutex.
+/// The thread and the data shared with it; guarded by the mutex.
 struct Worker
 {
   std::mutex Mutex;
-  std::condition_variable Wake; // the thread
+  std::condition_variable Wake; // wakes the thread
   std::deque<std::shared_ptr<Task>> Queue;
   std::atomic<bool> Busy{ false };
   pid_t Process = getpid();
 };
 
-/// The task whose call this thread runs.
+/// The task whose call is run by this thread.
 thread_local Task* callOf = nullptr;
 
 class Task : public WatchedWork
@@ -49,12 +49,12 @@ public:
   bool abandoned() const override { return this->Abandoned; }
   bool inCaller(const std::function<void()>& call) override;
 
-  /// In the watchdog's thread; `lock` is held before and after.
+  /// Runs in the watchdog's thread; `lock` is held before and after.
   void run(std::unique_lock<std::mutex>& lock);
-  /// In the calling thread.
+  /// Runs in the calling thread.
   WatchResult wait(std::unique_lock<std::mutex>& lock, const WatchLimits& limits);
 
-  /// Work given by the calling thread from within a call, while the watchdog's thread waits.
+  /// Work submitted by the calling thread from within a call, while the watchdog's thread waits.
   std::deque<std::shared_ptr<Task>> Nested;
 
 private:
@@ -68,7 +68,7 @@ private:
   std::exception_ptr Thrown, CallThrown;
   std::atomic<bool> Abandoned{ false };
   bool Done = false;
-  bool Answered = false; // the work has called back
+  bool Answered = false; // whether the work has called back
 };
 
 //------------------------------------------------------------------------------
@@ -84,7 +84,7 @@ void Task::run(std::unique_lock<std::mutex>& lock)
   {
     thrown = std::current_exception();
   }
-  this->Work = nullptr; // destroys what it owns
+  this->Work = nullptr; // destroys its data
   lock.lock();
   this->Thrown = thrown;
   this->Done = true;
@@ -100,7 +100,7 @@ bool Task::inCaller(const std::function<void()>& call)
   }
   this->Call = &call;
   this->Changed.notify_all();
-  // The call may give work to this thread, which it can only do now.
+  // The call may submit work to this thread, which can only be done now.
   while (this->Call && !this->Abandoned)
   {
     if (!this->Nested.empty())
@@ -161,7 +161,7 @@ WatchResult Task::abandon(WatchResult reason)
 WatchResult Task::wait(std::unique_lock<std::mutex>& lock, const WatchLimits& limits)
 {
   using Seconds = std::chrono::duration<double>;
-  constexpr double longest = 3600.0; // any: the loop goes on
+  constexpr double longest = 3600.0; // arbitrary: the loop continues
   const Stopwatch time;
   Stopwatch sinceAsked;
   const bool polls = limits.polls && interruptible();
@@ -200,7 +200,7 @@ WatchResult Task::wait(std::unique_lock<std::mutex>& lock, const WatchLimits& li
       sinceAsked = Stopwatch();
       if (stop && !this->Done)
       {
-        // Work that calls back is told so at its next call, and ends with its best result.
+        // Work that calls back is notified at its next call and ends with its best result.
         if (!sinceCancelled)
         {
           sinceCancelled.emplace();
@@ -246,7 +246,7 @@ void workForever(Worker* worker)
 }
 
 #ifdef __GLIBC__
-/// Work in the background uses libraries that exit() is about to take down.
+/// Background work uses libraries that exit() is about to destroy.
 void leaveIfBusy(int status, void*)
 {
   if (currentWorker()->Busy && currentWorker()->Process == getpid())
@@ -266,7 +266,7 @@ void waitWhileBusy()
 }
 #endif
 
-/// Starts the thread; signals are left to the other threads of the process.
+/// Starts the thread; signals are handled by the other threads of the process.
 void startThread(Worker* worker)
 {
   sigset_t all, before;
@@ -284,7 +284,7 @@ void startThread(Worker* worker)
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
 }
 
-/// The worker of this process, with its thread. After fork() the child has no thread yet.
+/// The worker of this process, with its thread. After fork(), the child has no thread yet.
 Worker& runningWorker()
 {
   static std::mutex starting;

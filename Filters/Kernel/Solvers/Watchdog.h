@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Watchdog.h
- * @brief Work that cannot be interrupted, under a time limit: it runs in a thread of its own while
- * the caller waits for it, and the caller may stop waiting.
- * Internal: not installed.
+ * @brief Work that cannot be interrupted, under a time limit: it runs in a separate thread while
+ * the caller waits for it, and the caller may stop waiting. Internal: not installed.
  *
- * There is one such thread, started at first use; work is done in the order of the calls. Work that
- * nobody waits for any more goes on in the background until it ends by itself; what is given later
- * waits for it, under its own limits. If the process ends meanwhile, it ends at once: the handlers
- * and destructors that exit() would still call are skipped, because the work may use what they
- * destroy.
+ * There is one such thread, started at first use; work is done in the order of the calls. Abandoned
+ * work continues in the background until it ends by itself; work submitted later waits for it,
+ * under its own limits. If the process ends in the meantime, it ends immediately: the remaining
+ * handlers and destructors of exit() are skipped because the work may use the objects they destroy.
  *
- * Cost: two switches between threads per call of runWatched() and of WatchedWork::inCaller().
+ * Cost: two thread switches per call of runWatched() and of WatchedWork::inCaller().
  */
 #ifndef tautline_Watchdog_h
 #define tautline_Watchdog_h
@@ -28,11 +26,11 @@ namespace tautline
 /// When to stop waiting.
 struct WatchLimits
 {
-  double seconds = 0.0; ///< wall time from the call on; 0: no limit
-  /// Whether the user has cancelled. Asked every WatchInterval seconds, from the waiting thread;
-  /// what it throws ends the waiting, too. Work that has called back gets CancelGrace to end.
+  double seconds = 0.0; ///< wall time since the call; 0: no limit
+  /// Whether the user has cancelled. Called every WatchInterval seconds from the waiting thread; an
+  /// exception also ends the waiting. Work that has called back gets CancelGrace seconds to end.
   std::function<bool()> cancelled;
-  /// Whether the waiting thread calls throwIfInterrupted(), which ends the waiting, too.
+  /// Whether the waiting thread calls throwIfInterrupted(), which also ends the waiting.
   bool polls = true;
 
   bool any() const
@@ -41,13 +39,13 @@ struct WatchLimits
   }
 };
 
-/// Seconds between two questions whether the user has cancelled.
+/// Seconds between two checks whether the user has cancelled.
 constexpr double WatchInterval = 0.05;
 
-/// Seconds that work which has called back may take to end by itself after the user has cancelled.
+/// Seconds that work which has called back may take to end after the user has cancelled.
 constexpr double CancelGrace = 0.5;
 
-/// How waiting ended.
+/// The reason why waiting ended.
 enum class WatchResult
 {
   Finished,
@@ -57,33 +55,34 @@ enum class WatchResult
 
 /**
  * @class tautline::WatchedWork
- * @brief What the work knows of the thread that waits for it.
+ * @brief The interface between the work and the thread waiting for it.
  */
 class TAUTLINE_SOLVERS_EXPORT WatchedWork
 {
 public:
   virtual ~WatchedWork() = default;
-  /// Whether nobody waits any more: the work should end soon. Any thread may ask.
+  /// Whether the caller has stopped waiting, so that the work should end soon. Any thread may call
+  /// this.
   virtual bool abandoned() const = 0;
   /**
-   * @brief Runs a call in the waiting thread and waits for its end; what it throws is thrown here.
-   * The call may give further work to runWatched().
-   * @return false if nobody waits any more: the call was not made
+   * @brief Runs a call in the waiting thread and waits for its end; its exceptions are rethrown
+   * here. The call may pass further work to runWatched().
+   * @return false if the caller has stopped waiting: the call was not made
    */
   virtual bool inCaller(const std::function<void()>& call) = 0;
 };
 
 /**
- * @brief Runs work in the watchdog's thread, and returns when it has finished, when the time is
- * over, or when the user has cancelled. Throws what the work throws.
- * @param work owns all it uses (results too, by shared pointers that the caller keeps): unless the
- * result is Finished it may still run, or never have started
+ * @brief Runs work in the watchdog's thread, and returns when it has finished, when the time limit
+ * is reached, or when the user has cancelled. Rethrows exceptions of the work.
+ * @param work must own all data it uses (including results, through shared pointers that the caller
+ * keeps): unless the result is Finished, it may still be running or may never have started
  */
 TAUTLINE_SOLVERS_EXPORT WatchResult runWatched(
   std::function<void(WatchedWork&)> work, const WatchLimits& limits);
 
-/// Whether this thread is inside a call of WatchedWork::inCaller(): the watchdog's thread waits for
-/// it.
+/// Whether this thread is inside a call of WatchedWork::inCaller(), for which the watchdog's thread
+/// is waiting.
 TAUTLINE_SOLVERS_EXPORT bool insideWatchedCall();
 }
 #endif

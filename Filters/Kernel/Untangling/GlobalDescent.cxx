@@ -8,7 +8,7 @@ namespace tautline
 namespace
 {
 /// Factors a Hessian block, shifted until it is positive definite. Not inlined: the norm determines
-/// the shift, and must be rounded in the same way wherever it is called.
+/// the shift and must be rounded identically in all calls.
 template <int Dim>
 __attribute__((noinline)) void factorBlock(const double (&H)[Dim][Dim], double* L)
 {
@@ -25,7 +25,7 @@ __attribute__((noinline)) void factorBlock(const double (&H)[Dim][Dim], double* 
   const double norm = std::sqrt(square);
   if (!(norm > 0) || !std::isfinite(norm))
   {
-    // No direction for this vertex: it stays.
+    // No direction for this vertex: it does not move.
     std::fill_n(L, Block::Entries, 0.0);
     return;
   }
@@ -63,7 +63,7 @@ void GlobalDescent<Dim>::start(const double* x, double eps)
 }
 
 //------------------------------------------------------------------------------
-/// Adds the energy of the simplices of a patch whose free vertex of the lowest number is v: so each
+/// Adds the energy of the simplices of a patch whose lowest-numbered free vertex is v, so that each
 /// simplex of the mesh counts once.
 template <int Dim>
 void GlobalDescent<Dim>::addEnergy(std::int32_t v, Patch<Dim>& patch, double& energy) const
@@ -88,7 +88,7 @@ void GlobalDescent<Dim>::addEnergy(std::int32_t v, Patch<Dim>& patch, double& en
   }
 }
 
-/// The energy at x; sets the gradient and the factors of the Hessian blocks.
+/// Returns the energy at x; sets the gradient and the factors of the Hessian blocks.
 template <int Dim>
 double GlobalDescent<Dim>::evaluate(const double* x)
 {
@@ -140,7 +140,7 @@ bool GlobalDescent<Dim>::step(double* x)
   constexpr int halvings = 20;
   for (;;)
   {
-    // The direction of L-BFGS with the Hessian blocks as preconditioner.
+    // The L-BFGS direction with the Hessian blocks as preconditioner.
     const double slope = this->Memory.direction(this->Gradient, this->Direction,
       [this](std::vector<double>& q)
       {
@@ -148,7 +148,7 @@ bool GlobalDescent<Dim>::step(double* x)
         return 1.0;
       });
     this->Before = this->Gradient;
-    // Halve the step until it reduces the energy enough.
+    // Halve the step until it reduces the energy sufficiently.
     double t = 1.0;
     const bool descent = slope < 0 && std::isfinite(slope);
     for (int trial = 0; descent && trial < halvings; ++trial, t *= 0.5)
@@ -163,7 +163,7 @@ bool GlobalDescent<Dim>::step(double* x)
         return true;
       }
     }
-    // Back to where the step began, and once more without the memory.
+    // Return to the start of the step and retry without the memory.
     this->Value = this->evaluate(x);
     if (this->Memory.empty())
     {

@@ -20,16 +20,17 @@ template <int Dim>
 class GlobalDescent
 {
 public:
-  /// `tangled` has to live as long as this.
+  /// `tangled` must outlive this object.
   explicit GlobalDescent(const TangledMesh<Dim>& tangled);
 
-  /// Discards the past steps and evaluates the energy at x with this regularization, at least 0.
+  /// Discards the previous steps and evaluates the energy at x with this regularization, at least
+  /// 0.
   void start(const double* x, double eps);
 
   /**
    * @brief One step of the minimization.
-   * @param x VertexStride coordinates per vertex, those of start() or of the last step; the free
-   * ones change
+   * @param x VertexStride coordinates per vertex, from start() or the last step; the free ones
+   * change
    * @return false if no step reduces the energy
    */
   bool step(double* x);
@@ -46,7 +47,7 @@ private:
 
   const TangledMesh<Dim>& Tangled;
   SimplexMesh& Mesh;
-  VectorAlgebra Algebra; ///< of VertexStride entries per free vertex, the last of each zero
+  VectorAlgebra Algebra; ///< VertexStride entries per free vertex, of which the last is zero
   LimitedMemory Memory;
   RegularizedShapeEnergy<Dim> Energy;
   double Value = 0;

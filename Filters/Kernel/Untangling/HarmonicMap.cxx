@@ -8,7 +8,7 @@ namespace tautline
 {
 namespace
 {
-/// The graph Laplacian of the free vertices: the number of neighbours less their sum.
+/// The graph Laplacian of the free vertices: the number of neighbors minus their sum.
 class GraphLaplacian
 {
 public:
@@ -24,7 +24,7 @@ public:
     for (std::int32_t v = 0; v < free; ++v)
     {
       pollInterruption(v);
-      // The patch has each neighbour several times.
+      // The patch lists each neighbor several times.
       const auto begin = static_cast<std::ptrdiff_t>(neighbours.size());
       neighbours.insert(neighbours.end(),
         mesh.patchVertices() + static_cast<std::size_t>(Dim) * mesh.patchStart(v),
@@ -38,10 +38,10 @@ public:
     return graph;
   }
 
-  /// Whether some neighbour is fixed.
+  /// Whether a neighbor is fixed.
   bool held() const { return this->Held; }
 
-  /// r = sign L y, where the fixed vertices of y count as 0 unless `fixed`.
+  /// r = sign L y, with fixed vertices of y treated as 0 unless `fixed`.
   void apply(const double* y, bool fixed, double sign, std::vector<double>& r) const
   {
     forEachChunk(this->Free, this->Threads,
@@ -70,7 +70,7 @@ public:
       });
   }
 
-  /// z = r over the numbers of neighbours.
+  /// z = r divided by the numbers of neighbors.
   void precondition(const std::vector<double>& r, std::vector<double>& z) const
   {
     for (std::int32_t v = 0; v < this->Free; ++v)
@@ -87,7 +87,7 @@ public:
 private:
   std::int32_t Free = 0;
   int Threads = 1;
-  std::vector<std::int32_t> Starts, Neighbours; ///< of each free vertex, once each
+  std::vector<std::int32_t> Starts, Neighbours; ///< neighbors of each free vertex, once each
   bool Held = false;
 };
 }

@@ -10,7 +10,7 @@ namespace
 /// A free vertex and a simplex whose other vertices are fixed.
 using Held = std::pair<std::int32_t, std::int32_t>;
 
-/// The places of a free vertex where a simplex is valid, relative to the vertex.
+/// The positions of a free vertex at which a simplex is valid, relative to the vertex.
 template <int Dim>
 struct ValidSide
 {
@@ -18,7 +18,7 @@ struct ValidSide
   std::int32_t simplex;
 };
 
-/// The simplices with one free vertex, if that is active, sorted by it.
+/// The simplices with one free vertex that is active, sorted by the vertex.
 template <int Dim>
 std::vector<Held> heldSimplices(
   const TangledMesh<Dim>& tangled, const std::vector<unsigned char>& active)
@@ -63,9 +63,10 @@ double signedVolume(const double (&e)[Dim + 1][Dim])
 }
 
 /**
- * @brief The half-space, with a normal of length 1, in which v makes the simplex valid.
+ * @brief The half-space of positions of v, with a normal of length 1, in which the simplex is
+ * valid.
  * @param reach becomes at least the largest coordinate of the corners relative to v
- * @return false if no place does: the fixed vertices are in one line or plane
+ * @return false if no position makes it valid: the fixed vertices are collinear or coplanar
  */
 template <int Dim>
 bool validSide(const SimplexMesh& mesh, const double* x, std::int32_t v, std::int32_t simplex,
@@ -84,7 +85,7 @@ bool validSide(const SimplexMesh& mesh, const double* x, std::int32_t v, std::in
       reach = std::max(reach, std::abs(e[k][c]));
     }
   }
-  // The volume is linear in v: its values at v and one step along each axis determine it.
+  // The volume is linear in v: its values at v and at one step along each axis determine it.
   space.b = signedVolume<Dim>(e);
   double length = 0;
   for (int c = 0; c < Dim; ++c)

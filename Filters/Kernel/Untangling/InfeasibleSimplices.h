@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file InfeasibleSimplices.h
- * @brief The simplices that no place of their one free vertex makes valid.
- * Internal: not installed.
+ * @brief The simplices that no position of their single free vertex makes valid. Internal: not
+ * installed.
  */
 #ifndef tautline_InfeasibleSimplices_h
 #define tautline_InfeasibleSimplices_h
@@ -12,12 +12,12 @@
 namespace tautline
 {
 /**
- * @brief Finds simplices that cannot all be valid while the fixed vertices are where they are: of
- * those with a single free vertex, the most violated are taken until a place of the vertex is left
- * for the rest. For Dim 2 and 3.
+ * @brief Finds simplices that cannot all be valid at the current positions of the fixed vertices:
+ * among the simplices with a single free vertex, the most violated are selected until the vertex
+ * has a position that is valid for the rest. For Dim 2 and 3.
  * @param x VertexStride coordinates per vertex
  * @param active one flag per free vertex: nonzero to check its simplices
- * @return simplices that are not infeasible yet
+ * @return simplices that are not yet marked as infeasible
  */
 template <int Dim>
 std::vector<std::int32_t> findInfeasible(

@@ -11,8 +11,8 @@ namespace
 {
 /**
  * @brief Maximizes c . x over half-spaces and the box |x_k| <= limit[k]. The expected time is
- * linear in their number if they come in a random order.
- * @param count of the first half-spaces that take part; their normals have length 1 or 0
+ * linear in their number if their order is random.
+ * @param count number of leading half-spaces to use; their normals have length 1 or 0
  * @param tolerance by which a half-space may be violated
  * @param x the maximizer, if there is one
  * @return whether there is a feasible point
@@ -22,7 +22,7 @@ bool maximize(const std::array<double, K>& c, const std::vector<HalfSpace<K>>& s
   std::size_t count, const std::array<double, K>& limit, double tolerance,
   std::array<double, K>& x);
 
-/// The program of one variable: an interval.
+/// The program with one variable: an interval.
 bool maximizeOnLine(const std::array<double, 1>& c, const std::vector<HalfSpace<1>>& spaces,
   std::size_t count, const std::array<double, 1>& limit, double tolerance, std::array<double, 1>& x)
 {
@@ -83,8 +83,7 @@ HalfSpace<K - 1> restrictToPlane(
   return r;
 }
 
-/// Solves the program of the first `count` half-spaces in the plane h, a program of one variable
-/// less.
+/// Solves the program of the first `count` half-spaces in the plane h, which has one variable less.
 template <int K>
 bool maximizeOnPlane(const std::array<double, K>& c, const std::vector<HalfSpace<K>>& spaces,
   std::size_t count, const std::array<double, K>& limit, double tolerance, const HalfSpace<K>& h,
@@ -96,7 +95,7 @@ bool maximizeOnPlane(const std::array<double, K>& c, const std::vector<HalfSpace
   {
     reduced.push_back(restrictToPlane<K>(spaces[j].a, spaces[j].b, h, pivot));
   }
-  // The limits of the eliminated variable become half-spaces, too.
+  // The limits of the eliminated variable also become half-spaces.
   std::array<double, K> side{};
   side[pivot] = 1;
   reduced.push_back(restrictToPlane<K>(side, limit[pivot], h, pivot));
@@ -158,7 +157,7 @@ bool maximize(const std::array<double, K>& c, const std::vector<HalfSpace<K>>& s
       {
         continue;
       }
-      // The optimum of the half-spaces up to here lies on the plane of this one.
+      // The optimum of the half-spaces so far lies on the plane of this one.
       if (h.a[pivot] == 0 ||
         !maximizeOnPlane<K>(c, spaces, i, limit, tolerance, h, pivot, reduced, x))
       {
@@ -175,7 +174,8 @@ template <int Dim>
 double chebyshevCenter(
   const std::vector<HalfSpace<Dim>>& planes, double reach, std::array<double, Dim>& center)
 {
-  // The radius is one more variable: a . x + r <= b, in units of the reach and with unit normals.
+  // The radius is an additional variable: a . x + r <= b, in units of the reach and with unit
+  // normals.
   constexpr int K = Dim + 1;
   std::vector<HalfSpace<K>> spaces;
   spaces.reserve(planes.size());
@@ -192,7 +192,7 @@ double chebyshevCenter(
     h.b *= std::sqrt(0.5);
     spaces.push_back(h);
   }
-  // A random order makes the expected time linear; a fixed seed makes it the same each time.
+  // A random order makes the expected time linear; a fixed seed makes it reproducible.
   std::uint64_t state = 1;
   for (std::size_t i = spaces.size(); i > 1; --i)
   {
@@ -202,7 +202,7 @@ double chebyshevCenter(
   std::array<double, K> c{}, limit, x{};
   c[Dim] = 1.0;
   limit.fill(1.0);
-  // Large enough that some centre violates no plane by more.
+  // Large enough that some center violates no plane by more than this.
   double deepest = 1.0;
   for (const HalfSpace<K>& h : spaces)
   {

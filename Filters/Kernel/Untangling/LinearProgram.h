@@ -2,9 +2,8 @@
 /**
  * @file LinearProgram.h
  * @brief Linear programs in a few variables (R. Seidel, "Small-dimensional linear programming and
- * convex hulls made easy", Discrete Comput. Geom. 6, 1991), and the Chebyshev centre of
- * half-spaces.
- * Internal: not installed.
+ * convex hulls made easy", Discrete Comput. Geom. 6, 1991), and the Chebyshev center of
+ * half-spaces. Internal: not installed.
  */
 #ifndef tautline_LinearProgram_h
 #define tautline_LinearProgram_h
@@ -16,7 +15,7 @@
 
 namespace tautline
 {
-/// The half-space a . x <= b of K variables.
+/// The half-space a . x <= b in K variables.
 template <int K>
 struct HalfSpace
 {
@@ -25,10 +24,10 @@ struct HalfSpace
 };
 
 /**
- * @brief The Chebyshev centre: the centre of the largest ball in all half-spaces. For Dim 2 and 3.
+ * @brief The Chebyshev center: the center of the largest ball in all half-spaces. For Dim 2 and 3.
  * @param planes a . x <= b with normals a of length 1
- * @param reach no coordinate of the centre exceeds it in magnitude
- * @return the radius; negative if no point is in all half-spaces: the centre then violates none by
+ * @param reach no coordinate of the center exceeds it in magnitude
+ * @return the radius; negative if no point is in all half-spaces: the center then violates none by
  * more than its magnitude
  */
 template <int Dim>

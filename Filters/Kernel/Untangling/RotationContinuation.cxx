@@ -35,8 +35,8 @@ double extentOf(const Group& group, const double* x)
   return sum;
 }
 
-/// The fixed vertices in groups connected by edges, the largest in extent first; the members of a
-/// group are in the order of the vertices.
+/// The fixed vertices in groups connected by edges, in descending order of extent; the members of a
+/// group are in vertex order.
 template <int Dim>
 std::vector<Group> fixedGroups(const SimplexMesh& mesh, const double* x)
 {
@@ -66,7 +66,7 @@ std::vector<Group> fixedGroups(const SimplexMesh& mesh, const double* x)
     }
     groups[groupOf[root]].push_back(free + i);
   }
-  // The largest first; equal ones in the order of their first vertex.
+  // In descending order of extent; equal ones in the order of their first vertex.
   std::vector<std::pair<double, std::size_t>> order;
   for (std::size_t g = 0; g < groups.size(); ++g)
   {
@@ -81,7 +81,7 @@ std::vector<Group> fixedGroups(const SimplexMesh& mesh, const double* x)
   return sorted;
 }
 
-/// Per vertex: 1 in the group, 0 at the other fixed vertices, harmonic between.
+/// Per vertex: 1 in the group, 0 at the other fixed vertices, harmonic in between.
 template <int Dim>
 std::vector<double> weightsAround(
   const Group& group, const TangledMesh<Dim>& tangled, double tolerance)
@@ -138,7 +138,7 @@ RotationContinuation<Dim>::RotationContinuation(
           x[VertexStride * static_cast<std::size_t>(v) + c] / static_cast<double>(groups[g].size());
       }
     }
-    // Rotations about the centre of the hole, by equal steps about each axis.
+    // Rotations about the center of the hole, in equal steps about each axis.
     AxisRotation chosen = rotation;
     const std::vector<double> before = rotated;
     for (rotation.axis = Dim == 2 ? 2 : 0; rotation.axis < 3; ++rotation.axis)

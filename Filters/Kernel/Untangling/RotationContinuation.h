@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file RotationContinuation.h
- * @brief A start for untangling a mesh around holes that were rotated: there, energies lead into a
- * fold where the elements should wind around the hole.
- * Internal: not installed.
+ * @brief An initial mesh for untangling around rotated holes: there, minimizing the energy leads to
+ * a fold, whereas the elements should wind around the hole. Internal: not installed.
  */
 #ifndef tautline_RotationContinuation_h
 #define tautline_RotationContinuation_h
@@ -12,7 +11,7 @@
 
 namespace tautline
 {
-/// A rotation about a line through `center`, parallel to an axis of coordinates.
+/// A rotation about a line through `center` parallel to a coordinate axis.
 struct AxisRotation
 {
   Vec3 center = { 0, 0, 0 };
@@ -30,34 +29,35 @@ struct AxisRotation
   }
 };
 
-/// A mesh with its holes rotated back, and the way from there to where they are. Dim is 2 or 3.
+/// A mesh with its holes rotated back, and the path from there to their current positions. Dim is 2
+/// or 3.
 template <int Dim>
 class RotationContinuation
 {
 public:
   /**
-   * @brief Finds for each hole how far its boundary is rotated against the rest: the rotation back
-   * with which the harmonic map has the fewest invalid simplices. At most eight holes.
+   * @brief For each hole, finds how far its boundary is rotated relative to the rest: the inverse
+   * rotation for which the harmonic map has the fewest invalid simplices. At most eight holes.
    * @param x of the input, VertexStride coordinates per vertex; not changed
    * @param tolerance of the harmonic maps
    */
   RotationContinuation(const TangledMesh<Dim>& tangled, const double* x, double tolerance);
 
-  /// No rotation is better than none.
+  /// Whether no rotation improves the mesh.
   bool empty() const { return this->Holes.empty(); }
-  /// All vertices, those of the holes rotated back and the free ones at the harmonic map.
+  /// All vertices, with the holes rotated back and the free vertices at the harmonic map.
   const std::vector<double>& start() const { return this->Start; }
   /// In radians.
   double largestAngle() const;
-  /// Rotates the holes, and the vertices around them less the farther away they are, by a fraction
-  /// of the way.
+  /// Rotates the holes by a fraction of the path; the rotation of the surrounding vertices
+  /// decreases with distance.
   void advance(double fraction, double* x) const;
 
 private:
   struct HoleRotation
   {
     AxisRotation rotation;
-    /// Per vertex: 1 on the hole, 0 on other fixed ones, harmonic between.
+    /// Per vertex: 1 on the hole, 0 on other fixed vertices, harmonic in between.
     std::vector<double> weights;
   };
 

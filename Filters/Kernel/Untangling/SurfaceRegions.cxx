@@ -11,14 +11,15 @@ namespace tautline
 {
 namespace
 {
-/// Rings of elements around the invalid ones, one after the other.
+/// Numbers of rings of elements around the invalid ones, tried in this order.
 constexpr int RingCounts[] = { 1, 2, 4 };
-/// The cosine between the normals of a valid element and its region, at least.
+/// The minimum cosine of the angle between the normals of a valid element and its region.
 constexpr double LeastCosine = 0.3;
-/// The cosine between the normals of valid neighbors whose edge is a feature that is kept, at most.
+/// The maximum cosine of the angle between the normals of valid neighbors whose common edge is a
+/// feature to keep.
 constexpr double FeatureCosine = 0.77;
 
-/// A triangle of the input in the plane of a region, with the heights of its corners over it.
+/// An input triangle in the plane of a region, with the heights of its corners above the plane.
 struct Piece
 {
   Vec3 corners[3]; ///< u, v and the height
@@ -37,7 +38,7 @@ class SurfaceUntangler
 public:
   SurfaceUntangler(const Mesh& mesh, const UntangleOptions& options, UntangleProgress& progress,
     const PlanarUntangling& inPlane, std::vector<signed char>& validity, UntangleResult& result);
-  /// Treats all invalid elements with some rings around; whether to go on.
+  /// Processes all invalid elements with this number of rings; returns whether to continue.
   bool run(int rings);
 
 private:
@@ -91,7 +92,7 @@ SurfaceUntangler::SurfaceUntangler(const Mesh& mesh, const UntangleOptions& opti
 {
 }
 
-/// Twice as long as the area.
+/// Its length is twice the area.
 Vec3 SurfaceUntangler::normalOf(Index cell, const double* points) const
 {
   const CellTopology& t = this->topologyOf(cell);
@@ -104,7 +105,7 @@ Vec3 SurfaceUntangler::normalOf(Index cell, const double* points) const
   return vectorArea(t, p);
 }
 
-/// The invalid elements, those with common points together.
+/// The invalid elements, grouped by common points.
 std::vector<std::vector<Index>> SurfaceUntangler::clusters() const
 {
   UnionFind sets(this->View.numberOfPoints);
@@ -136,7 +137,7 @@ std::vector<std::vector<Index>> SurfaceUntangler::clusters() const
   return result;
 }
 
-/// Cells, and those that have points of them, in increasing order.
+/// The cells and the cells that share points with them, in increasing order.
 std::vector<Index> SurfaceUntangler::withRing(const std::vector<Index>& cells) const
 {
   std::vector<Index> result = cells;
@@ -154,8 +155,8 @@ std::vector<Index> SurfaceUntangler::withRing(const std::vector<Index>& cells) c
   return result;
 }
 
-/// The region around invalid elements, without valid ones that are steep against it; no cells where
-/// it has no normal.
+/// The region around invalid elements, without valid elements that are steep relative to it; empty
+/// if it has no normal.
 SurfaceRegion SurfaceUntangler::regionOf(const std::vector<Index>& cluster, int rings) const
 {
   SurfaceRegion region;
@@ -200,14 +201,14 @@ SurfaceRegion SurfaceUntangler::regionOf(const std::vector<Index>& cluster, int 
   return region;
 }
 
-/// Along both axes, and the height.
+/// The coordinates along both axes, and the height.
 Vec3 SurfaceUntangler::inPlane(const SurfaceRegion& region, const Vec3& x) const
 {
   const Vec3 d = x - region.origin;
   return { dot(d, region.axes[0]), dot(d, region.axes[1]), dot(d, region.normal) };
 }
 
-/// Holds the ends of sharp edges between valid elements.
+/// Fixes the ends of sharp edges between valid elements.
 void SurfaceUntangler::flagFeatures(
   const SurfaceRegion& region, std::map<Index, unsigned char>& held) const
 {
@@ -278,8 +279,8 @@ std::vector<Piece> SurfaceUntangler::piecesOf(const SurfaceRegion& region) const
   return pieces;
 }
 
-/// The height of the surface over a place of the plane: in the triangle that has the place, or that
-/// it is least outside of.
+/// The height of the surface above a position in the plane: from the triangle that contains the
+/// position, or is closest to containing it.
 double heightAt(const std::vector<Piece>& pieces, double u, double v, double none)
 {
   double best = -HUGE_VAL, height = none;
@@ -307,7 +308,8 @@ double heightAt(const std::vector<Piece>& pieces, double u, double v, double non
   return height;
 }
 
-/// Takes the points of a region if fewer elements are invalid then, and no others than before.
+/// Accepts the points of a region if they make fewer elements invalid, and no element invalid that
+/// was valid before.
 bool SurfaceUntangler::accept(const SurfaceRegion& region, const std::vector<Vec3>& moved)
 {
   const std::vector<double> before = this->Result.points;

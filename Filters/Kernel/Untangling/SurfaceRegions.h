@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SurfaceRegions.h
- * @brief Untangles the elements of a surface in space that are not valid.
- * Internal: not installed.
+ * @brief Untangles the invalid elements of a surface in space. Internal: not installed.
  *
- * An element of a surface has no sign of its own: that of a corner is the one against the normal of
- * the neighborhood. The rings of elements around the invalid ones are projected to the tangent
- * plane there, untangled in it with the points around held, and put back on the surface.
+ * An element of a surface has no intrinsic sign: the sign of a corner is determined relative to the
+ * normal of the neighborhood. The rings of elements around the invalid ones are projected onto the
+ * local tangent plane, untangled in it with the surrounding points held, and moved back onto the
+ * surface.
  */
 #ifndef tautline_SurfaceRegions_h
 #define tautline_SurfaceRegions_h
@@ -21,10 +21,10 @@ namespace tautline
 using PlanarUntangling = std::function<UntangleResult(const Mesh&, const UntangleOptions&)>;
 
 /**
- * @brief Untangles as described above; what cannot be repaired so stays as it is.
+ * @brief Untangles as described above; elements that cannot be repaired in this way are unchanged.
  * @param mesh a surface in space
- * @param validity of its cells; of the result afterwards
- * @param result with the points of the mesh; gets points, obstacles and numbers
+ * @param validity of its cells; updated for the result
+ * @param result contains the points of the mesh; receives points, obstacles, and counts
  */
 void untangleSurface(const Mesh& mesh, const UntangleOptions& options, UntangleProgress& progress,
   const PlanarUntangling& inPlane, std::vector<signed char>& validity, UntangleResult& result);

@@ -9,11 +9,11 @@ namespace tautline
 {
 namespace
 {
-/// The ends of the edges in the order of TargetSimplex::edge.
+/// The endpoints of the edges in the order of TargetSimplex::edge.
 constexpr int Edges3[6][2] = { { 0, 1 }, { 0, 2 }, { 0, 3 }, { 1, 2 }, { 1, 3 }, { 2, 3 } };
 constexpr int Edges2[3][2] = { { 0, 1 }, { 0, 2 }, { 1, 2 } };
 
-/// With fewer simplices, threads wait for each other more than they work.
+/// With fewer simplices, threads spend more time waiting for each other than working.
 constexpr std::int32_t WorthThreads = 32768;
 }
 
@@ -107,7 +107,7 @@ PatchState TangledMesh<Dim>::examine(const Patch<Dim>& patch, const double* d) c
 }
 
 //------------------------------------------------------------------------------
-/// The edge coefficients and determinants of the targets of the simplices from `first` on.
+/// The edge coefficients and determinants of the targets of the simplices starting at `first`.
 template <int Dim>
 void TangledMesh<Dim>::loadTarget(Index first, int lanes, Packet* weight, Packet& det) const
 {
@@ -233,7 +233,8 @@ MeshState TangledMesh<Dim>::examine(const double* x) const
 }
 
 //------------------------------------------------------------------------------
-/// The eps with which the smallest determinant of a patch counts as a fraction of the mean one.
+/// The eps for which the smallest determinant of a patch is regularized to a fraction of the mean
+/// determinant.
 template <int Dim>
 double TangledMesh<Dim>::regularization(const PatchState& state) const
 {
@@ -249,7 +250,7 @@ bool TangledMesh<Dim>::relax(
   this->gather(x, v, patch);
   std::array<double, Dim> d{};
   PatchState state = this->examine(patch, d.data());
-  constexpr double beforeInversion = 0.9; // of the way to it
+  constexpr double beforeInversion = 0.9; // fraction of the distance to inversion
   constexpr int halvings = 12;
   bool moved = false;
   for (int step = 0; step < steps; ++step)
@@ -275,7 +276,7 @@ bool TangledMesh<Dim>::relax(
     {
       break;
     }
-    // Halve the step until it reduces the energy and makes no more simplices invalid.
+    // Halve the step until it reduces the energy without making more simplices invalid.
     double t = 1.0;
     if (state.invalid == 0)
     {
@@ -305,7 +306,7 @@ bool TangledMesh<Dim>::relax(
       break;
     }
   }
-  // Where descent does not help: the place farthest from all planes.
+  // If descent does not help, try the position farthest from all planes.
   if (state.invalid > 0 && tryCenter)
   {
     const std::array<double, Dim> center = this->patchCenter(patch);
@@ -327,8 +328,8 @@ bool TangledMesh<Dim>::relax(
 }
 
 //------------------------------------------------------------------------------
-/// The Chebyshev centre of the places where all simplices of the patch are valid, or of the
-/// smallest violation; as a displacement, 0 if nothing bounds it.
+/// The displacement to the Chebyshev center of the positions at which all simplices of the patch
+/// are valid, or to the position of the smallest violation; 0 if it is unbounded.
 template <int Dim>
 std::array<double, Dim> TangledMesh<Dim>::patchCenter(const Patch<Dim>& patch) const
 {

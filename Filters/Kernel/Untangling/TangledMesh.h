@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TangledMesh.h
- * @brief A SimplexMesh with the simplices that are not valid, and the moves of one vertex that make
- * more of them valid.
- * Internal: not installed.
+ * @brief A SimplexMesh with its invalid simplices, and the moves of single vertices that make more
+ * simplices valid. Internal: not installed.
  */
 #ifndef tautline_TangledMesh_h
 #define tautline_TangledMesh_h
@@ -13,7 +12,7 @@
 
 namespace tautline
 {
-/// N^(n/2), the volume D would have were the simplex of ideal shape, up to a factor.
+/// N^(n/2), the value that D would have, up to a factor, if the simplex had the ideal shape.
 template <int Dim>
 inline Packet sizeOf(Packet N)
 {
@@ -23,15 +22,15 @@ inline Packet sizeOf(Packet N)
 /// The validity of the simplices of a patch.
 struct PatchState
 {
-  int invalid = 0;            ///< simplices that are not valid
+  int invalid = 0;            ///< invalid simplices
   double minDeterminant = 0;  ///< the smallest D
   double meanDeterminant = 0; ///< mean of |D|
 };
 
-/// The validity of the simplices of a mesh. Infeasible ones are those that take no part.
+/// The validity of the simplices of a mesh. Infeasible simplices are ignored.
 struct MeshState
 {
-  Index invalid = 0;         ///< simplices that are not valid, without the infeasible
+  Index invalid = 0;         ///< invalid simplices, without the infeasible ones
   double minDeterminant = 0; ///< the smallest D among the simplices that are not infeasible
   double invertedVolume = 0; ///< the sum of -D over the inverted ones
   std::vector<std::int32_t> simplices;  ///< the invalid ones, in increasing order
@@ -44,7 +43,7 @@ class TangledMesh
 {
 public:
   /**
-   * @param mesh has to live as long as this
+   * @param mesh must outlive this object
    * @param threads as in Parallel.h; small meshes use one
    */
   TangledMesh(SimplexMesh& mesh, int threads);
@@ -56,9 +55,9 @@ public:
   double margin() const { return this->Margin; }
   void setMargin(double margin) { this->Margin = margin; }
 
-  /// Simplices that cannot become valid take no part; at first those without a free vertex.
+  /// Simplices that cannot become valid are ignored; initially, those without a free vertex.
   bool infeasible(std::int32_t simplex) const { return this->Infeasible[simplex] != 0; }
-  /// Makes more simplices infeasible.
+  /// Marks more simplices as infeasible.
   void exclude(const std::vector<std::int32_t>& simplices);
 
   /// The validity at the coordinates x, VertexStride per vertex.
@@ -70,10 +69,11 @@ public:
   void gather(const double* x, std::int32_t v, Patch<Dim>& patch) const;
 
   /**
-   * @brief Moves v to reduce the regularized shape energy of its patch, a few Newton steps; never
-   * to more invalid simplices. The regularization is chosen for the patch, anew in each step.
-   * @param tryCenter where simplices stay invalid, try the Chebyshev centre of the patch
-   * @param patch work space
+   * @brief Moves v to reduce the regularized shape energy of its patch, by a few Newton steps,
+   * without increasing the number of invalid simplices. The regularization is chosen for the patch
+   * in each step.
+   * @param tryCenter if simplices remain invalid, try the Chebyshev center of the patch
+   * @param patch workspace
    * @param mayInvert whether more simplices of a patch with invalid ones may become invalid
    * @return whether v moved
    */

@@ -9,8 +9,8 @@ namespace tautline
 {
 namespace
 {
-// Determinants over the product of the lengths of the edges at a corner, the mean of an element:
-// what a step aims at, and what it has to leave to every element it has an effect on.
+// Determinants over the mean product of the edge lengths at a corner of an element: the target of a
+// step, and the minimum that it must leave to every element it affects.
 constexpr double target = 0.1, enough = 0.02;
 
 /// An element with its smallest determinant.
@@ -39,7 +39,7 @@ public:
   {
   }
 
-  /// One pass; whether a step was taken and `proceed` was true.
+  /// One pass; returns whether a step was taken and `proceed` returned true.
   bool pass(const std::function<bool()>& proceed)
   {
     bool moved = false;
@@ -97,11 +97,11 @@ private:
   std::vector<double>& Points;
   std::vector<signed char>& State;
   const VertexCells Cells;
-  std::vector<char> Blocked; ///< per cell: no step helped, and no point around has moved since
+  std::vector<char> Blocked; ///< per cell: no step helped, and no surrounding point has moved since
 };
 
 //------------------------------------------------------------------------------
-/// The mirror image where the mesh counts as mirrored.
+/// The mirror image if the mesh is treated as mirrored.
 Element Unfolder::element(Index cell) const
 {
   Element e;
@@ -148,8 +148,8 @@ std::vector<Index> Unfolder::cellsAt(const Index* nodes, int count) const
   return cells;
 }
 
-/// Cells that are valid at the corners only, and those next to them that are so poor that they are
-/// in the way.
+/// Cells that are valid only at the corners, and their neighbors that are poor enough to obstruct
+/// them.
 std::vector<Index> Unfolder::poorCells() const
 {
   std::vector<Index> poor;
@@ -178,7 +178,7 @@ std::vector<Index> Unfolder::poorCells() const
 }
 
 //------------------------------------------------------------------------------
-/// Some steps of one element, of all its vertices or else of single ones.
+/// Several steps of one element, by all its vertices or, if that fails, by single ones.
 bool Unfolder::improve(Index cell)
 {
   constexpr int steps = 10;
@@ -207,7 +207,7 @@ bool Unfolder::improve(Index cell)
 /// A step along the gradient of the smallest determinant, by all free vertices or one.
 bool Unfolder::step(const Element& e, int only)
 {
-  constexpr double longest = 0.3; // of the mean edge at a corner
+  constexpr double longest = 0.3; // relative to the mean edge length at a corner
   constexpr int halvings = 7;
   const CellTopology& t = *e.topology;
   Vec3 gradient[MaxNodes] = {};
@@ -247,7 +247,7 @@ bool Unfolder::step(const Element& e, int only)
   return false;
 }
 
-/// Takes a step if the element gains by it and no other loses what it needs.
+/// Accepts a step if it improves the element and leaves the required minimum to all others.
 bool Unfolder::tryStep(const Element& e, const Vec3* steps, const std::vector<Element>& around)
 {
   constexpr double worthwhile = 1e-3;

@@ -4,9 +4,9 @@
  * @brief Makes hexahedra and wedges valid between their corners.
  * Internal: not installed.
  *
- * The other phases of untangling see the corners only. Here the smallest determinant of an element
- * that is not valid is raised, along its gradient by the free vertices of the element, with steps
- * that leave no other element less valid.
+ * The other phases of untangling consider only the corners. Here, the free vertices of an invalid
+ * element move along the gradient of its smallest determinant, in steps that make no other element
+ * less valid.
  */
 #ifndef tautline_Unfold_h
 #define tautline_Unfold_h

@@ -12,9 +12,9 @@ namespace tautline
 {
 namespace
 {
-/// Widths of the rings about the invalid elements, in cells; then comes the whole mesh.
+/// Widths of the rings around the invalid elements, in cells; then follows the whole mesh.
 constexpr int widths[] = { 4, 12 };
-/// Bytes per cell of untangle() with its mesh, measured on tetrahedra and rounded up.
+/// Bytes per cell of untangle() including the mesh, measured for tetrahedra and rounded up.
 constexpr double bytesPerCell = 1500;
 
 struct RegionPoint
@@ -32,7 +32,7 @@ struct RegionCell
   auto key() const { return std::tie(this->sorted, this->type, this->numbers); }
 };
 
-/// The cells about invalid elements, of the whole mesh and in its order.
+/// The cells around invalid elements, from the whole mesh and in its order.
 struct Region
 {
   std::vector<RegionPoint> points; ///< in the order of their numbers
@@ -56,7 +56,7 @@ void unify(std::vector<RegionPoint>& points)
     points.end());
 }
 
-/// @param cells type, number of points and their numbers of each
+/// @param cells type, number of points, and point numbers of each cell
 Region makeRegion(std::vector<RegionPoint> points, const std::vector<Index>& cells)
 {
   Region region;
@@ -78,11 +78,11 @@ Region makeRegion(std::vector<RegionPoint> points, const std::vector<Index>& cel
   return region;
 }
 
-/// A connected part of a region as a mesh of its own.
+/// A connected part of a region as a separate mesh.
 struct Part
 {
-  std::vector<Index> pointOf; ///< of the region, per point
-  std::vector<Index> cellOf;  ///< of the region, per cell
+  std::vector<Index> pointOf; ///< number in the region, per point
+  std::vector<Index> cellOf;  ///< number in the region, per cell
   std::vector<double> x;
   std::vector<unsigned char> types, fixed;
   std::vector<Index> offsets = { 0 }, connectivity;
@@ -132,7 +132,7 @@ Part makePart(const Region& region, std::vector<Index> cells)
   return part;
 }
 
-/// The parts of a region that its free points connect; cells without one are a part each.
+/// The parts of a region that its free points connect; each cell without one is a separate part.
 std::vector<std::vector<Index>> connectedParts(const Region& region)
 {
   UnionFind sets(static_cast<Index>(region.points.size()));
@@ -222,8 +222,8 @@ RegionUntangler::RegionUntangler(const Mesh& mesh, const UntangleOptions& option
 }
 
 //------------------------------------------------------------------------------
-/// The owned cells with a free point that is marked: type, number of points, their numbers; and
-/// their points.
+/// The owned cells with a marked free point (type, number of points, point numbers) and their
+/// points.
 void RegionUntangler::listNear(const std::vector<unsigned char>& near,
   std::vector<RegionPoint>& points, std::vector<Index>& cells) const
 {
@@ -252,8 +252,8 @@ void RegionUntangler::listNear(const std::vector<unsigned char>& near,
 
 //------------------------------------------------------------------------------
 /// The cells with a point within `width` cells of an invalid one that can be repaired, on all
-/// ranks; all cells if width is negative, on the first rank: they are one part as a rule, and each
-/// copy takes as much memory as the whole mesh.
+/// ranks; all cells if width is negative, on the first rank only: they are usually one part, and
+/// each copy takes as much memory as the whole mesh.
 Region RegionUntangler::gather(int width)
 {
   const MeshView& view = this->View;
@@ -295,12 +295,12 @@ Region RegionUntangler::gather(int width)
 }
 
 //------------------------------------------------------------------------------
-/// Untangles the parts of a region, each on one rank: those of the whole mesh on the first one.
+/// Untangles the parts of a region, each on one rank; parts of the whole mesh on the first rank.
 /// Returns the sum of their objectives.
 double RegionUntangler::solve(const Region& region, int width)
 {
   std::vector<RegionPoint> moved;
-  std::vector<Index> obstacles; // of elements: the obstacle, how many points, their numbers
+  std::vector<Index> obstacles; // per element: the obstacle, the number of points, their numbers
   std::vector<double> objectives;
   const std::vector<std::vector<Index>> parts = connectedParts(region);
   const bool whole = width < 0;
@@ -345,7 +345,7 @@ double RegionUntangler::solve(const Region& region, int width)
 }
 
 //------------------------------------------------------------------------------
-/// @param list of elements: the obstacle, how many points, their numbers
+/// @param list per element: the obstacle, the number of points, the point numbers
 void RegionUntangler::note(const std::vector<Index>& list, int width)
 {
   for (auto next = list.begin(); next != list.end();)
@@ -353,7 +353,7 @@ void RegionUntangler::note(const std::vector<Index>& list, int width)
     const Index obstacle = *next++;
     const auto begin = next + 1;
     next = begin + *next;
-    // Points around a region that is not the whole mesh are held, but not fixed.
+    // Points around a partial region are held but not fixed.
     const bool known = width < 0 || obstacle == static_cast<Index>(Obstacle::FixedElement);
     this->Obstacles[{ begin, next }] = known ? static_cast<Obstacle>(obstacle) : Obstacle::Unknown;
   }
@@ -373,8 +373,8 @@ void RegionUntangler::take(const std::vector<RegionPoint>& moved)
 }
 
 //------------------------------------------------------------------------------
-/// Whether the whole mesh can be untangled on the first rank. Where it cannot, what was repaired
-/// before is kept; Error if nothing was.
+/// Whether the whole mesh can be untangled on the first rank. If not, the previous repairs are
+/// kept; throws Error if there are none.
 bool RegionUntangler::fitsWhole()
 {
   const double bytes = bytesPerCell * static_cast<double>(this->Spread.globalCells());
@@ -382,9 +382,9 @@ bool RegionUntangler::fitsWhole()
   try
   {
     requireMemory(this->Group.rank() == 0 ? bytes : 0.0,
-      "untangling the whole mesh on the first process, where what is about the invalid elements is "
-      "not enough,",
-      "choose the Effort Local");
+      "untangling the whole mesh on the first process, because the regions around the invalid "
+      "elements are not sufficient,",
+      "choose Effort = Local");
   }
   catch (const MemoryError& error)
   {
@@ -427,7 +427,7 @@ void RegionUntangler::untangleWithin(int width)
 }
 
 //------------------------------------------------------------------------------
-/// The numbers of the points of a cell in increasing order.
+/// The point numbers of a cell in increasing order.
 std::vector<Index> RegionUntangler::numbersOf(Index cell) const
 {
   std::vector<Index> sorted;
@@ -440,7 +440,7 @@ std::vector<Index> RegionUntangler::numbersOf(Index cell) const
 }
 
 //------------------------------------------------------------------------------
-/// Of the local cells.
+/// Finds the obstacles of the local cells.
 void RegionUntangler::findObstacles()
 {
   for (Index cell = 0; cell < this->View.numberOfCells; ++cell)
@@ -459,10 +459,10 @@ void RegionUntangler::findObstacles()
 }
 
 //------------------------------------------------------------------------------
-/// The invalid elements of the whole mesh with their obstacles.
+/// Lists the invalid elements of the whole mesh with their obstacles.
 void RegionUntangler::listRemaining()
 {
-  std::vector<Index> numbers; // of each element: how many points, their numbers
+  std::vector<Index> numbers; // of each element: the number of points, the point numbers
   std::vector<TangledElement> elements;
   for (Index cell = 0; cell < this->View.numberOfCells; ++cell)
   {

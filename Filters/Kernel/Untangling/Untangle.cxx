@@ -14,7 +14,7 @@ namespace tautline
 {
 namespace
 {
-/// Writes the vertices that moved; the others stay bitwise what they were.
+/// Writes the vertices that moved; the others are bitwise unchanged.
 void storeMoved(const SimplexMesh& simplices, const std::vector<double>& start, const double* x,
   int threads, std::vector<double>& points)
 {
@@ -32,7 +32,7 @@ void storeMoved(const SimplexMesh& simplices, const std::vector<double>& start, 
 }
 
 //------------------------------------------------------------------------------
-/// Sets for each cell that is not valid the reason.
+/// Sets the reason for each invalid cell.
 void findObstacles(const Mesh& mesh, const SimplexMesh& simplices,
   const std::vector<signed char>& validity, const std::vector<std::int32_t>& infeasible,
   UntangleResult& result)
@@ -76,7 +76,7 @@ void findObstacles(const Mesh& mesh, const SimplexMesh& simplices,
       }
       for (int s = 0; anyFree && s < t.samples && t.dimension == simplices.dimension(); ++s)
       {
-        // A corner of fixed vertices that is not valid: the cell cannot be either.
+        // If a corner with only fixed vertices is invalid, the cell cannot become valid.
         bool fixedCorner = true;
         Vec3 e[4];
         for (int k = 0; k <= t.dimension; ++k)
@@ -102,7 +102,7 @@ void findObstacles(const Mesh& mesh, const SimplexMesh& simplices,
 }
 
 //------------------------------------------------------------------------------
-/// The invalid cells whose corners are not valid, either: those the simplices have.
+/// The invalid cells with an invalid corner: those detected by the simplices.
 Index countInvalidCorners(
   const Mesh& mesh, const std::vector<double>& points, const std::vector<signed char>& validity)
 {
@@ -125,7 +125,7 @@ Index countInvalidCorners(
   return count;
 }
 
-/// Makes cells valid that are so at the corners only, and adds a record.
+/// Repairs cells that are valid only at the corners, and adds a record.
 void unfoldCells(const Mesh& mesh, const SimplexMesh& simplices, UntangleProgress& progress,
   std::vector<signed char>& validity, UntangleResult& result)
 {
@@ -156,7 +156,8 @@ void untangleSimplices(const Mesh& mesh, SimplexMesh& simplices, const UntangleO
   const std::vector<signed char> before = validity;
   Index fewest = countInvalidCorners(mesh, input, before);
   Untangler<Dim> untangler(mesh, simplices, options, progress);
-  // Coordinates are rounded to points: where cells lose their validity, again with a wider margin.
+  // Coordinates are rounded when stored as points: if cells become invalid, repeat with a wider
+  // margin.
   for (const double margin : { 1e-12, 1e-9, 1e-6 })
   {
     const double* x = untangler.run(margin);
@@ -201,7 +202,8 @@ BoundaryConstraints constraintsOf(const UntangleOptions& options, const unsigned
   return constraints;
 }
 
-/// Flags the points that do not slide and are not free: the given ones, or those of the boundary.
+/// Flags the points that do not slide and are not free: the specified points, or the boundary
+/// points.
 std::vector<unsigned char> fixedPoints(const Mesh& mesh, const UntangleOptions& options)
 {
   const Index points = mesh.view().numberOfPoints;
@@ -222,7 +224,7 @@ std::vector<unsigned char> fixedPoints(const Mesh& mesh, const UntangleOptions& 
   return fixed;
 }
 
-/// Moves the points with those of the boundary, if that leaves fewer invalid cells.
+/// Moves the points together with the boundary points, if that leaves fewer invalid cells.
 void slideHere(const Mesh& mesh, const UntangleOptions& options,
   const std::vector<unsigned char>& fixed, UntangleProgress& progress,
   std::vector<signed char>& validity, UntangleResult& result)
@@ -277,7 +279,8 @@ void untangleHere(const Mesh& mesh, const UntangleOptions& options, UntangleProg
   }
 }
 
-/// The same, from the points of the result on and with others held, if that leaves fewer invalid.
+/// The same, starting from the points of the result and with other points held, if that leaves
+/// fewer invalid cells.
 void untangleHolding(const Mesh& mesh, const UntangleOptions& options,
   const ConstrainedPoints& constrained, UntangleProgress& progress,
   std::vector<signed char>& validity, UntangleResult& result)
@@ -300,8 +303,8 @@ void untangleHolding(const Mesh& mesh, const UntangleOptions& options,
   result.invertedBefore = before;
 }
 
-/// The same where points slide. These stay if that is enough; otherwise all move together, and, for
-/// what is left, the free ones alone.
+/// The same with sliding points. They are held if that is sufficient; otherwise all points move
+/// together, and then the free points alone repair the rest.
 void untangleWithBoundary(const Mesh& mesh, const UntangleOptions& options,
   UntangleProgress& progress, std::vector<signed char>& validity, UntangleResult& result)
 {
@@ -316,7 +319,7 @@ void untangleWithBoundary(const Mesh& mesh, const UntangleOptions& options,
     untangleHolding(mesh, options, constrained, progress, validity, result);
     if (result.invertedAfter > 0 && !progress.stopped())
     {
-      // Points that were moved in vain would be where the others do not need them.
+      // Discard moves of sliding points that did not help.
       result.points = start;
       validity = before;
       result.invertedAfter = result.invertedBefore;
@@ -350,7 +353,7 @@ UntangleResult untangle(const Mesh& mesh, const UntangleOptions& options, const 
       if (ranks.several() && !options.fixed && view.numberOfPoints > 0)
       {
         throw Error(
-          "The fixed points of a mesh on several ranks must be given, see rankBoundary().");
+          "The fixed points of a mesh on several ranks must be specified, see rankBoundary().");
       }
       result.points.assign(view.points, view.points + 3 * view.numberOfPoints);
       result.obstacles.assign(view.numberOfCells, static_cast<signed char>(Obstacle::None));
@@ -367,16 +370,16 @@ UntangleResult untangle(const Mesh& mesh, const UntangleOptions& options, const 
       if (result.invertedBefore > 0 && onSurface && ranks.several())
       {
         throw Error(
-          "Untangling on several processes, or in the reproducible order, works on planar "
-          "and volume meshes: this is a surface in space. Gather it on one process.");
+          "Untangling on several processes or in the reproducible order is only supported for "
+          "planar and volume meshes: this is a surface in space. Gather it on one process.");
       }
       if (slides(options) && (onSurface || ranks.several()))
       {
         throw Error(onSurface
-            ? "A surface in space is untangled with a boundary that stays and without a geometry: "
-              "let the boundary be fixed."
-            : "Untangling with a boundary that slides works on one process: let the boundary be "
-              "fixed, or gather the mesh.");
+            ? "Untangling a surface in space requires a fixed boundary and does not support a "
+              "geometry: fix the boundary."
+            : "Untangling with a sliding boundary is only supported on one process: fix the "
+              "boundary, or gather the mesh.");
       }
       if (dimension == Dimension::None || (onSurface && result.invertedBefore == 0))
       {

@@ -17,11 +17,11 @@ namespace tautline
 Index countInvalid(
   const Mesh& mesh, const std::vector<signed char>& validity, const Ranks& ranks = {});
 
-/// The history, the observer and the time limit; starts when it is made.
+/// The history, the observer and the time limit; the clock starts at construction.
 class UntangleProgress
 {
 public:
-  /// The references have to live as long as this.
+  /// The references must outlive this object.
   UntangleProgress(const UntangleOptions& options, const Ranks& ranks, UntangleResult& result)
     : Options(options)
     , TheRanks(ranks)
@@ -29,13 +29,13 @@ public:
   {
   }
 
-  /// Of the next record.
+  /// The number of the next record.
   int iteration() const { return static_cast<int>(this->Result.history.size()); }
 
   /**
    * @brief Records an iteration and calls the observer. The ranks stop together: collective.
    * @param inverted, objective as in UntangleResult::history
-   * @param fraction of the work that is done, at most
+   * @param fraction upper bound of the completed fraction of the work
    * @param points writes the coordinates, 3 per point of the local mesh
    * @return whether another iteration may follow
    */
@@ -47,7 +47,7 @@ public:
   void stop(StopReason reason);
   /// Whether the time limit is reached on this rank.
   bool late() const { return this->Clock.reached(this->Options.maximumSeconds); }
-  /// For another untangling; 0 where there is no limit, else above 0.
+  /// The time left for further untangling; 0 if there is no limit, otherwise above 0.
   double secondsLeft() const;
 
 private:

@@ -13,10 +13,10 @@ namespace tautline
 {
 namespace
 {
-// Tolerances of the harmonic maps that are starts.
+// Tolerances of the harmonic maps used as initial meshes.
 constexpr double harmonicTolerance = 1e-3, tightHarmonicTolerance = 1e-6;
 
-/// Iterations an effort allows, of all phases together.
+/// The iteration limit of an effort, for all phases together.
 int iterationLimit(Effort effort)
 {
   constexpr int local = 60, normal = 1500, thorough = 5000;
@@ -46,7 +46,7 @@ Untangler<Dim>::Untangler(const Mesh& mesh, SimplexMesh& simplices, const Untang
 template <int Dim>
 void Untangler<Dim>::record()
 {
-  // While fixed vertices are elsewhere, no coordinates count as better.
+  // While fixed vertices are displaced, no coordinates are accepted as better.
   const double* x = this->Continuing ? this->Best.data() : this->x();
   const Index invalid = this->Continuing ? this->FewestInvalid : this->invalidCells();
   const int iteration = this->Progress.iteration();
@@ -110,7 +110,7 @@ Index Untangler<Dim>::invalidCells() const
   return std::unique(ids.begin(), ids.end()) - ids.begin();
 }
 
-/// Marks the free vertices of invalid simplices and as many rings of vertices around them.
+/// Marks the free vertices of invalid simplices and the given number of rings around them.
 template <int Dim>
 void Untangler<Dim>::markActive(int rings)
 {
@@ -153,7 +153,8 @@ void Untangler<Dim>::markActive(int rings)
 template <int Dim>
 void Untangler<Dim>::sweepLocally(const SweepLimits& limits)
 {
-  // With time, more vertices give way; the linear programs are for the few that are left.
+  // Over time, more vertices are moved; the linear programs are used for the few remaining
+  // simplices.
   constexpr int steps = 4, maxRings = 4, sweepsPerRing = 2;
   constexpr double few = 0.02;
   Index fewest = this->State.invalid;
@@ -175,7 +176,7 @@ void Untangler<Dim>::sweepLocally(const SweepLimits& limits)
 }
 
 //------------------------------------------------------------------------------
-/// Leaves out simplices of invalid ones' vertices that contradict each other.
+/// Excludes contradicting simplices at the vertices of invalid ones.
 template <int Dim>
 void Untangler<Dim>::excludeInfeasible()
 {
@@ -191,7 +192,7 @@ void Untangler<Dim>::excludeInfeasible()
 }
 
 //------------------------------------------------------------------------------
-/// Whether a vertex of a simplex is not where it was in the input.
+/// Whether a vertex of a simplex has moved from its input position.
 template <int Dim>
 bool Untangler<Dim>::moved(std::int32_t simplex) const
 {
@@ -213,7 +214,7 @@ void Untangler<Dim>::smoothWorst()
   constexpr double poor = 1e-2;
   for (int sweep = 0; sweep < sweeps && !this->stopped(); ++sweep)
   {
-    // With a wide margin, the poor simplices count as invalid.
+    // With a wide margin, poor simplices count as invalid.
     const double margin = this->Tangled.margin();
     this->Tangled.setMargin(std::max(margin, poor));
     this->examine();
@@ -230,7 +231,7 @@ void Untangler<Dim>::smoothWorst()
   }
 }
 
-/// Reduces the energy of a valid mesh a little; it stays valid.
+/// Reduces the energy of a valid mesh slightly; it remains valid.
 template <int Dim>
 void Untangler<Dim>::smoothAll()
 {
@@ -260,7 +261,7 @@ void Untangler<Dim>::smoothAll()
 
 //------------------------------------------------------------------------------
 /// Minimizes the energy of the whole mesh for a falling sequence of regularizations. Between the
-/// solves the local sweeps try to finish; where they cannot, what they did is undone.
+/// solves, local sweeps try to finish; if they fail, their moves are undone.
 template <int Dim>
 void Untangler<Dim>::descend(const Regularization& schedule)
 {
@@ -295,7 +296,7 @@ void Untangler<Dim>::descend(const Regularization& schedule)
   }
 }
 
-/// Starts at the harmonic map; false if no vertex is fixed.
+/// Sets the coordinates to the harmonic map; false if no vertex is fixed.
 template <int Dim>
 bool Untangler<Dim>::startHarmonic(double tolerance)
 {
@@ -308,8 +309,9 @@ bool Untangler<Dim>::startHarmonic(double tolerance)
 }
 
 //------------------------------------------------------------------------------
-/// For holes that were rotated: starts at a mesh with the holes rotated back and continues step by
-/// step to where they are, valid after each step. Ends with the fixed vertices where they belong.
+/// For rotated holes: starts with a mesh in which the holes are rotated back and moves them step by
+/// step to their positions; the mesh is valid after each step. Ends with the fixed vertices at
+/// their original positions.
 template <int Dim>
 void Untangler<Dim>::continueRotation(double tolerance)
 {
@@ -329,7 +331,7 @@ void Untangler<Dim>::continueRotation(double tolerance)
   double fraction = 0, step = largest;
   while (fraction < 1.0 && this->untangled() && !this->stopped())
   {
-    // Shorter steps where the elements do not follow.
+    // Shorten the step if the elements do not become valid.
     step = std::min(step, 1.0 - fraction);
     const std::vector<double> keep = this->coordinates();
     rotation.advance(step, this->x());
@@ -364,8 +366,8 @@ void Untangler<Dim>::continueRotation(double tolerance)
 }
 
 //------------------------------------------------------------------------------
-/// The local sweeps, then regularizations of the size of the worst determinant, which keep most of
-/// a mesh.
+/// Local sweeps, then regularizations of the magnitude of the worst determinant, which preserve
+/// most of the mesh.
 template <int Dim>
 void Untangler<Dim>::untangleNearby()
 {
@@ -378,7 +380,7 @@ void Untangler<Dim>::untangleNearby()
   this->descend(nearby);
 }
 
-/// The local sweeps, then the usual schedule.
+/// Local sweeps, then the usual schedule.
 template <int Dim>
 void Untangler<Dim>::untangleAll()
 {
@@ -386,7 +388,7 @@ void Untangler<Dim>::untangleAll()
   this->descend(Regularization());
 }
 
-/// All vertices at once, from one start after the other.
+/// Moves all vertices at once, from several initial meshes in turn.
 template <int Dim>
 void Untangler<Dim>::untangleGlobally()
 {
@@ -394,7 +396,7 @@ void Untangler<Dim>::untangleGlobally()
   const std::vector<double> before = this->coordinates();
   const double relativeEps = ofWorst * std::abs(this->State.minDeterminant);
 
-  // A few invalid simplices: a short try that leaves the others about where they are.
+  // For a few invalid simplices: a short attempt that hardly moves the others.
   if (this->invalidFraction() < few)
   {
     Regularization brief;
@@ -465,7 +467,7 @@ const double* Untangler<Dim>::run(double margin)
   this->examine();
   this->forgetBest();
   this->record();
-  // A sweep or a harmonic map of a large mesh ends where it polls.
+  // Thrown to end a sweep or a harmonic map of a large mesh where it polls.
   struct OutOfTime
   {
   };
@@ -515,7 +517,7 @@ void Untangler<Dim>::untangleSimultaneously()
     this->examine();
     if (this->untangled())
     {
-      this->forgetBest(); // the last of the valid ones is the smoothest
+      this->forgetBest(); // the last valid mesh is the smoothest
     }
     this->record();
     if (this->untangled())
@@ -530,15 +532,15 @@ void Untangler<Dim>::untangleSimultaneously()
   }
   if (!this->untangled() && !this->stopped())
   {
-    this->excludeInfeasible(); // for the reasons of what is left
+    this->excludeInfeasible(); // for the obstacles of the remaining elements
   }
 }
 
-/// Around the invalid simplices, then what is left all at once.
+/// Local moves around the invalid simplices, then all vertices at once for the rest.
 template <int Dim>
 void Untangler<Dim>::untangleAutomatically()
 {
-  // Few invalid simplices: first the vertices around them alone.
+  // For few invalid simplices: first, only the vertices around them.
   constexpr double many = 0.05;
   const bool onlyLocal = this->Options.effort == Effort::Local;
   if (!this->done() && (onlyLocal || this->invalidFraction() < many))

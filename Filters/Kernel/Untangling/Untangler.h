@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Untangler.h
- * @brief The phases of untangling: sweeps around the inverted simplices; all vertices at once;
- * holes that were rotated.
- * Internal: not installed.
+ * @brief The phases of untangling: sweeps around the inverted simplices; moves of all vertices at
+ * once; continuation for rotated holes. Internal: not installed.
  */
 #ifndef tautline_Untangler_h
 #define tautline_Untangler_h
@@ -16,14 +15,15 @@
 
 namespace tautline
 {
-/// A falling sequence of regularizations, with a minimization for each.
+/// A decreasing sequence of regularizations, with a minimization for each.
 struct Regularization
 {
-  double eps = 1.0;        ///< the first; determinants are 1 for a simplex with mean edges
-  double factor = 0.5;     ///< from each to the next
-  double tolerance = 1e-3; ///< a solve ends when an iteration reduces the energy by less of it
+  double eps = 1.0;    ///< initial value; determinants are 1 for a simplex with mean edges
+  double factor = 0.5; ///< ratio of successive values
+  /// a solve ends if an iteration reduces the energy by less than this fraction
+  double tolerance = 1e-3;
   int solves = 12;
-  int iterations = 30; ///< of a solve, at most
+  int iterations = 30; ///< maximum per solve
 };
 
 /// Sweeps around the invalid simplices.
@@ -31,7 +31,7 @@ struct SweepLimits
 {
   int sweeps = 10;
   double progress = 0.7; ///< a sweep should leave at most this fraction of the invalid simplices
-  int patience = 1;      ///< as many sweeps in a row may leave more
+  int patience = 1;      ///< number of consecutive sweeps that may leave more
 };
 
 /// The untangling of a mesh of dimension Dim, 2 or 3.
@@ -39,7 +39,7 @@ template <int Dim>
 class Untangler
 {
 public:
-  /// The references have to live as long as this.
+  /// The references must outlive this object.
   Untangler(const Mesh& mesh, SimplexMesh& simplices, const UntangleOptions& options,
     UntangleProgress& progress);
 
@@ -50,20 +50,19 @@ public:
    */
   const double* run(double margin);
 
-  /// Simplices no place of their free vertex makes valid while the fixed vertices are where they
-  /// are.
+  /// Simplices that no position of their free vertex makes valid with the current fixed vertices.
   const std::vector<std::int32_t>& infeasible() const { return this->Infeasible; }
   /// Whether a limit or the observer ended the run.
   bool stopped() const { return this->Progress.stopped(); }
   /// Cells that are not valid, the infeasible included.
   Index invalidCells() const;
-  /// Whether all simplices that can be valid are.
+  /// Whether all feasible simplices are valid.
   bool untangled() const { return this->State.invalid == 0; }
 
 private:
   double* x() const { return this->Simplices.coordinates(); }
   void record();
-  /// The next record becomes the best; the limits stay.
+  /// Makes the next record the best; the limits are kept.
   void forgetBest() { this->FewestInvalid = std::numeric_limits<Index>::max(); }
   void examine() { this->State = this->Tangled.examine(this->x()); }
   void setCoordinates(const std::vector<double>& from);
@@ -92,15 +91,15 @@ private:
   const UntangleOptions& Options;
   TangledMesh<Dim> Tangled;
   UntangleProgress& Progress;
-  bool OnlySimplices; ///< each cell is one simplex
+  bool OnlySimplices; ///< whether each cell is one simplex
   std::size_t Coordinates;
   std::vector<double> Start; ///< coordinates of the input
-  std::vector<double> Best;  ///< those with the fewest invalid cells
+  std::vector<double> Best;  ///< coordinates with the fewest invalid cells
   Index FewestInvalid = 0;
   std::vector<unsigned char> Active;
   std::vector<std::int32_t> Infeasible;
   MeshState State;
-  bool Continuing = false; ///< fixed vertices are not at their places
+  bool Continuing = false; ///< whether fixed vertices are displaced
 };
 }
 #endif

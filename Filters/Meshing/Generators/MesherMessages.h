@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MesherMessages.h
- * @brief What the library TautlineMeshGenerators and its program tautline-mesher send each other.
+ * @brief The messages between the library TautlineMeshGenerators and its program tautline-mesher.
  * Internal: not installed.
  *
- * Both are of one version and run on one machine, so numbers are sent as they are in memory. The
- * library sends one request, the program some Progress (planar requests only), then a Result, a
- * Failure or NoMemory. Each message is a MessageHeader and its bytes.
+ * Both have the same version and run on one machine, so numbers are sent in their memory format.
+ * The library sends one request; the program sends Progress messages (planar requests only), then a
+ * Result, a Failure or NoMemory. Each message consists of a MessageHeader and its bytes.
  */
 #ifndef tautline_MesherMessages_h
 #define tautline_MesherMessages_h
@@ -33,7 +33,7 @@ enum class MesherMessage : std::int64_t
 struct MessageHeader
 {
   MesherMessage kind = MesherMessage::Failure;
-  std::uint64_t bytes = 0; ///< that follow
+  std::uint64_t bytes = 0; ///< number of bytes that follow
 };
 
 ///@{
@@ -127,7 +127,7 @@ private:
   }
 };
 
-/// Takes values from the start of bytes. Throws Error where there are too few.
+/// Takes values from the start of bytes. Throws Error if there are too few.
 class MessageReader
 {
 public:

@@ -23,7 +23,7 @@ namespace tautline
 {
 namespace
 {
-/// The program beside this library, as both are installed and as both are built.
+/// The program's location relative to this library, installed and in the build tree.
 std::string installedProgram()
 {
   Dl_info info{};
@@ -38,7 +38,7 @@ std::string installedProgram()
   return error ? TAUTLINE_MESHER_INSTALLED : program.string();
 }
 
-/// The path of the program, which exists. Throws Error otherwise.
+/// The path of the program. Throws Error if it does not exist.
 std::string findProgram()
 {
   const char* const given = std::getenv("TAUTLINE_MESHER");
@@ -48,14 +48,15 @@ std::string findProgram()
   {
     return path;
   }
-  throw Error("mesh generators are a program of their own, tautline-mesher, and there is none at " +
+  throw Error("mesh generators are a separate program, tautline-mesher, which does not exist at " +
     path +
-    (named ? ", which the environment variable TAUTLINE_MESHER names; correct or remove it"
-           : "; install the Debian package tautline-meshers, or name the program by the "
-             "environment variable TAUTLINE_MESHER"));
+    (named ? ", given by the environment variable TAUTLINE_MESHER; correct or remove the variable"
+           : "; install the Debian package tautline-meshers, or set the environment variable "
+             "TAUTLINE_MESHER to the program"));
 }
 
-/// Starts the program with a socket as standard input and output; its process, or an error number.
+/// Starts the program with a socket as standard input and output. Gives its process id, or an error
+/// number.
 int spawn(const std::string& program, int socket, pid_t& child)
 {
   const std::string parent = std::to_string(::getpid());
@@ -107,7 +108,7 @@ MesherProcess::~MesherProcess()
   ::close(this->Socket);
   if (this->Child > 0)
   {
-    ::kill(this->Child, SIGTERM); // it ends its own child and removes its files
+    ::kill(this->Child, SIGTERM); // it then ends its own child and removes its files
     while (::waitpid(this->Child, nullptr, 0) < 0 && errno == EINTR)
     {
     }
@@ -125,7 +126,8 @@ void MesherProcess::failEnded()
   throw Error("the program " + this->Program + " ended without a result (" +
     (WIFSIGNALED(status) ? "signal " + std::to_string(WTERMSIG(status))
                          : "exit code " + std::to_string(WEXITSTATUS(status))) +
-    "); allow larger elements if memory is short, else reinstall the package tautline-meshers");
+    "); allow larger elements if memory is short, otherwise reinstall the package "
+    "tautline-meshers");
 }
 
 //------------------------------------------------------------------------------

@@ -17,16 +17,16 @@ namespace tautline
 {
 /**
  * @class tautline::MesherProcess
- * @brief Starts the program, asks it for one mesh, and ends it.
+ * @brief Starts the program, requests one mesh from it, and ends it.
  *
- * The program ends with this object, and where this process ends in any way (SIGKILL as well). It
- * is the file that the environment variable TAUTLINE_MESHER names, or the one that is installed
- * with this library (libexec/tautline/tautline-mesher).
+ * The program ends with this object, and whenever this process ends (also by SIGKILL). It is the
+ * file given by the environment variable TAUTLINE_MESHER, or the one installed with this library
+ * (libexec/tautline/tautline-mesher).
  */
 class MesherProcess
 {
 public:
-  /// Throws Error where the program is missing, with the package that has it.
+  /// Throws Error, with the name of its package, if the program is missing.
   MesherProcess();
   ~MesherProcess();
   MesherProcess(const MesherProcess&) = delete;
@@ -35,10 +35,10 @@ public:
   /**
    * @brief The bytes of the Result of a request.
    * @param progress called with the number of points of each Progress (0 before the first), and
-   * five times a second where there is none; returning false ends the process with Error "stopped"
+   * five times a second if there is none; returning false ends the process with Error "stopped"
    *
-   * Throws Error with the text of a Failure, or where the process ends without a result;
-   * std::bad_alloc for NoMemory; what throwIfInterrupted() throws.
+   * Throws Error with the text of a Failure, or if the process ends without a result;
+   * std::bad_alloc for NoMemory; and as throwIfInterrupted() does.
    */
   std::vector<char> ask(MesherMessage request, const std::vector<char>& bytes,
     const std::function<bool(Index)>& progress);

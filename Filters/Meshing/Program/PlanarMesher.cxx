@@ -24,7 +24,7 @@ namespace tautline
 {
 namespace
 {
-/// Number of an input point; -1 for a point of the refinement.
+/// Index of an input point; -1 for a point of the refinement.
 struct Info
 {
   Index id = -1;
@@ -40,19 +40,19 @@ using Triangulation = CGAL::Constrained_Delaunay_triangulation_2<Traits, Structu
 using Vertex = Triangulation::Vertex_handle;
 using Face = Triangulation::Face_handle;
 
-/// The options, with the sizes at points as a function of the place.
+/// The options, with the sizes at points as a function of position.
 struct Bounds : PlanarOptions
 {
   std::function<double(double, double)> sizeField;
 };
 
-/// Angle and size bounds after CGAL's concept MeshingCriteria_2.
+/// Angle and size bounds according to CGAL's concept MeshingCriteria_2.
 class Criteria
 {
 public:
   using Face_handle = Face;
 
-  /// Too large comes first, the largest first; then the smallest angle.
+  /// Triangles that are too large come first, in decreasing size; then the smallest angle.
   struct Quality
   {
     double sine = 1.0;   ///< squared, of the smallest angle
@@ -100,8 +100,8 @@ public:
       }
       q.excess = size > 0.0 ? lengths[2] / (size * size) : 0.0;
       const double area = 2.0 * CGAL::area(a, b, c);
-      // Near sharp corners of the input small angles cannot be refined away: trying ends in edges
-      // shorter than the resolution of the coordinates.
+      // Small angles near sharp corners of the input cannot be refined away: attempts would end in
+      // edges shorter than the resolution of the coordinates.
       q.sine = lengths[0] > this->Smallest ? area * area / (lengths[1] * lengths[2]) : 1.0;
       return (*this)(q);
     }
@@ -124,7 +124,7 @@ private:
   double Smallest;
 };
 
-/// The exponent of the largest coordinate. Throws Error on one that is not finite.
+/// The exponent of the largest coordinate. Throws Error if a coordinate is not finite.
 int exponentOf(const PlanarBoundary& boundary)
 {
   double largest = 0.0;
@@ -142,7 +142,8 @@ int exponentOf(const PlanarBoundary& boundary)
   return exponent;
 }
 
-/// Times 2^exponent, which is exact: but for over- and underflow, all that follows is the same.
+/// Scales by 2^exponent, which is exact: except for overflow and underflow, all subsequent results
+/// are the same.
 void scale(std::vector<double>& values, int exponent)
 {
   for (double& value : values)
@@ -154,7 +155,7 @@ void scale(std::vector<double>& values, int exponent)
 Bounds scaled(const PlanarBoundary& boundary, const PlanarOptions& options, int exponent)
 {
   Bounds result = { options, {} };
-  // Of the largest coordinate; shorter edges can hardly be told from points.
+  // Relative to the largest coordinate; shorter edges can hardly be distinguished from points.
   constexpr double Resolution = 1e-13;
   const auto size = [exponent](double value)
   {
@@ -183,8 +184,8 @@ Bounds scaled(const PlanarBoundary& boundary, const PlanarOptions& options, int 
   return result;
 }
 
-/// Throws Error if the segments alone need more points than allowed: refining would take long to
-/// find that out.
+/// Throws Error if the segments alone need more points than allowed; refinement would detect this
+/// only after a long time.
 void checkSize(const PlanarBoundary& boundary, const PlanarOptions& options)
 {
   double pieces = 0.0;
@@ -206,7 +207,7 @@ void checkSize(const PlanarBoundary& boundary, const PlanarOptions& options)
   }
 }
 
-/// The square of an edge that is tiny compared to the whole.
+/// The square of an edge length that is tiny compared to the region.
 double tinyEdge(const PlanarBoundary& boundary)
 {
   constexpr double Tiny = 1e-6;
@@ -264,7 +265,7 @@ void insertSegments(
   }
 }
 
-/// Sets whether faces are inside: all faces reached from a start without crossing a segment.
+/// Sets the inside flag of all faces reached from a start without crossing a segment.
 void fill(Triangulation& triangulation, Face start, bool inside,
   std::unordered_map<Face, int, CGAL::Handle_hash_function>& level, int value,
   std::deque<std::pair<Face, int>>* border)
@@ -297,7 +298,8 @@ void fill(Triangulation& triangulation, Face start, bool inside,
   }
 }
 
-/// Inside is what an odd number of outlines surrounds, or all that no hole's point reaches.
+/// The inside is surrounded by an odd number of outlines, or consists of all parts not reached from
+/// a hole's point.
 void markDomain(Triangulation& triangulation, const PlanarBoundary& boundary, bool holesGiven)
 {
   std::unordered_map<Face, int, CGAL::Handle_hash_function> level;
@@ -318,7 +320,7 @@ void markDomain(Triangulation& triangulation, const PlanarBoundary& boundary, bo
     const Face face = triangulation.locate({ boundary.holes[i], boundary.holes[i + 1] });
     if (face == Face() || triangulation.is_infinite(face))
     {
-      throw Error("the point of hole " + std::to_string(i / 2) + " is outside of the outlines");
+      throw Error("the point of hole " + std::to_string(i / 2) + " is outside the outlines");
     }
     fill(triangulation, face, false, level, 0, nullptr);
   }
@@ -330,7 +332,7 @@ void refine(Triangulation& triangulation, const Bounds& options, double smallest
     triangulation, Criteria(options, smallest));
   mesher.init(true);
   constexpr int Steps = 1000;
-  // Memory for a quarter more, whenever there are a quarter more points.
+  // Reserves memory for a quarter more points whenever the number has grown by a quarter.
   constexpr double BytesPerPoint = 600, Growth = 1.25;
   double checked = 1e5;
   while (!mesher.is_refinement_done())
@@ -362,7 +364,7 @@ void refine(Triangulation& triangulation, const Bounds& options, double smallest
 void collectEdges(const Triangulation& triangulation, const PlanarBoundary& boundary,
   const std::vector<Vertex>& vertices, PlanarMesh& mesh)
 {
-  // the smaller marker where two segments are the same
+  // the smaller marker if two segments coincide
   std::map<std::pair<Index, Index>, int> markers;
   for (std::size_t s = 0; s < boundary.markers.size(); ++s)
   {
@@ -413,7 +415,7 @@ void collectEdges(const Triangulation& triangulation, const PlanarBoundary& boun
 //------------------------------------------------------------------------------
 PlanarMesh meshPlane(const PlanarBoundary& given, const PlanarOptions& required)
 {
-  // Squares and cubes of coordinates are computed: they must neither overflow nor vanish.
+  // Squares and cubes of coordinates are computed, which must neither overflow nor vanish.
   const int exponent = exponentOf(given);
   PlanarBoundary boundary = given;
   scale(boundary.points, -exponent);

@@ -15,7 +15,7 @@ namespace tautline
 std::function<double(double, double)> makeSizeField(
   const std::vector<double>& points, const std::vector<double>& sizes, double gradation)
 {
-  // The locator computes squares: it searches at a scale where they neither overflow nor vanish.
+  // The locator computes squares, so it searches at a scale where they neither overflow nor vanish.
   double largest = 0.0;
   for (const double x : points)
   {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SizeField.h
- * @brief Sizes at points as a function of the place.
+ * @brief Sizes at points as a function of position.
  */
 #ifndef tautline_SizeField_h
 #define tautline_SizeField_h
@@ -12,7 +12,8 @@
 namespace tautline
 {
 /**
- * @brief The size at a place x, y: that of the nearest point plus the distance times `gradation`.
+ * @brief The size at a position x, y: the size of the nearest point plus the distance times
+ * `gradation`.
  * @param points x y each; the function keeps a copy
  * @param sizes one per point
  */

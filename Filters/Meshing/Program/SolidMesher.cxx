@@ -70,7 +70,7 @@ void checkBoundary(const SolidBoundary& boundary)
   }
   if (points < 4 || boundary.facets.size() < 4)
   {
-    throw Error("a closed surface has at least 4 points and 4 facets, this one has " +
+    throw Error("a closed surface has at least 4 points and 4 facets; this one has " +
       std::to_string(points) + " and " + std::to_string(boundary.facets.size()));
   }
 }
@@ -107,7 +107,7 @@ void setFacet(const SolidFacet& from, tetgenio::facet& to)
   }
 }
 
-/// `numbers`: facets are marked by their number, from 1, instead of their marker.
+/// @param numbers whether facets are marked by their number, from 1, instead of their marker
 void setInput(
   const SolidBoundary& boundary, const SolidOptions& options, bool numbers, tetgenio& in)
 {
@@ -138,7 +138,7 @@ void setInput(
   }
 }
 
-/// Writes a vector, or an array of TetGen's, behind its length.
+/// Writes a vector, or an array of TetGen, after its length.
 template <class To, class From>
 void send(int pipe, const From* values, std::size_t count)
 {
@@ -162,7 +162,7 @@ void send(int pipe, const From* values, std::size_t count)
   write(copied.data(), length * sizeof(To));
 }
 
-/// Takes a vector from the start of the bytes that were sent; false if there are too few.
+/// Takes a vector from the start of the received bytes; false if there are too few.
 template <class Value>
 bool receive(const std::vector<char>& bytes, std::size_t& at, std::vector<Value>& values)
 {
@@ -186,7 +186,7 @@ bool receive(const std::vector<char>& bytes, std::size_t& at, std::vector<Value>
   return true;
 }
 
-/// A folder for the files that TetGen 1.6 writes where facets intersect; removed at the end.
+/// A folder for the files that TetGen 1.6 writes if facets intersect; removed at the end.
 class ScratchFolder
 {
 public:
@@ -211,7 +211,7 @@ public:
 
   const std::string& path() const { return this->Path; }
 
-  /// The markers of the facets that TetGen has left out, as they intersect others.
+  /// The markers of the facets that TetGen has left out because they intersect others.
   std::vector<int> skippedMarkers() const
   {
     std::vector<int> markers;
@@ -230,7 +230,7 @@ private:
   std::string Path;
 };
 
-/// In a process of its own: TetGen, then its result into the pipe. Does not return.
+/// Runs TetGen in a separate process and writes its result to the pipe. Does not return.
 [[noreturn]] void work(const std::string& switches, const SolidBoundary& boundary,
   const SolidOptions& options, bool numbers, double available, const std::string& folder, int pipe)
 {
@@ -241,7 +241,7 @@ private:
   }
   const rlimit noCore = { 0, 0 };
   setrlimit(RLIMIT_CORE, &noCore);
-  limitMemory(available); // TetGen reports the lack of it; the system would end a process
+  limitMemory(available); // TetGen reports a lack of memory; the system would kill a process
   const int nowhere = ::open("/dev/null", O_WRONLY);
   ::dup2(nowhere, STDOUT_FILENO); // TetGen prints even with -Q
   ::dup2(nowhere, STDERR_FILENO);
@@ -327,8 +327,8 @@ int readAll(int pipe, const TerminationSignal& termination, const SolidOptions& 
 /**
  * Runs TetGen; 0, the number it throws, Crashed, Stopped or TooLong. It runs in a child process:
  * TetGen 1.5 frees its memory twice when it throws, which would end this program as well, and some
- * inputs make it loop or crash. The child ends with this process, and SIGTERM to this process ends
- * the child and removes the folder of its files first. Where TetGen 1.6 throws, the mesh has the
+ * inputs make it loop or crash. The child ends with this process; SIGTERM to this process first
+ * ends the child and removes the folder of its files. If TetGen 1.6 throws, the mesh has the
  * markers of the facets that intersect others.
  */
 int run(const std::string& switches, const SolidBoundary& boundary, const SolidOptions& options,
@@ -386,7 +386,7 @@ int run(const std::string& switches, const SolidBoundary& boundary, const SolidO
   return complete ? 0 : Crashed;
 }
 
-/// "facets 3, 17", those TetGen's search for intersections marks; empty if it finds none.
+/// "facets 3, 17", as marked by TetGen's search for intersections; empty if there are none.
 std::string intersectingFacets(const SolidBoundary& boundary, SolidOptions options)
 {
   constexpr double Seconds = 60.0;
@@ -419,9 +419,8 @@ std::string intersectingFacets(const SolidBoundary& boundary, SolidOptions optio
   }
   if (code == TooLong)
   {
-    throw Error(
-      "TetGen did not end within the time limit; allow more time or larger tetrahedra, or check "
-      "the surface for very small angles");
+    throw Error("TetGen did not finish within the time limit; allow more time or larger "
+                "tetrahedra, or check the surface for very small angles");
   }
   if (code == 1)
   {
@@ -434,10 +433,10 @@ std::string intersectingFacets(const SolidBoundary& boundary, SolidOptions optio
   }
   throw Error(
     "TetGen failed: is the surface closed, without duplicate, degenerate or nearly touching "
-    "facets? Merge doubled points first (Clean to Grid), or preserve the surface");
+    "facets? Merge duplicate points first (Clean to Grid), or preserve the surface");
 }
 
-/// A positive number without an exponent, which TetGen does not read, in all its digits.
+/// A positive number with all its digits and without an exponent, which TetGen cannot read.
 std::string withoutExponent(double value)
 {
   constexpr int digits = std::numeric_limits<double>::max_digits10;
@@ -449,7 +448,7 @@ std::string withoutExponent(double value)
   return text;
 }
 
-/// The power of two that brings the largest coordinate between 1 and 2: it rounds nothing.
+/// The power of two that scales the largest coordinate to between 1 and 2, without rounding.
 double unitScale(const std::vector<double>& points)
 {
   double largest = 0.0;
@@ -469,7 +468,7 @@ void scale(std::vector<double>& lengths, double by)
   }
 }
 
-/// TetGen 1.6 compares lengths and volumes with absolute numbers.
+/// TetGen 1.6 compares lengths and volumes with absolute thresholds.
 void scaleInput(SolidBoundary& boundary, SolidOptions& options, double by)
 {
   scale(boundary.points, by);
@@ -485,7 +484,7 @@ void scaleInput(SolidBoundary& boundary, SolidOptions& options, double by)
     }
   }
   scale(options.pointSizes, by);
-  // One factor after the other: the third power of the scale alone may be infinite.
+  // Multiplies factor by factor: the cube of the scale alone may be infinite.
   const auto volumeOf = [by](double volume) { return volume * by * by * by; };
   options.volume = volumeOf(options.volume);
   constexpr std::size_t perRegion = 5, place = 3; // x y z, reference, volume
@@ -534,9 +533,9 @@ std::string switchesFor(const SolidOptions& options)
   return switches;
 }
 
-/// run() until no tetrahedron is larger than wanted, which TetGen 1.6 exceeds by up to a half. Not
-/// with a surface that is kept: its facets may hold larger ones. Returns the best mesh so far where
-/// a later run fails or does not help.
+/// Repeats run() until no tetrahedron exceeds the volume bound, which TetGen 1.6 exceeds by up to a
+/// half. Not with a preserved surface, whose facets may require larger ones. Returns the best mesh
+/// so far if a later run fails or does not help.
 int runWithin(const SolidBoundary& boundary, SolidOptions options, SolidMesh& mesh)
 {
   using Clock = std::chrono::steady_clock;
@@ -588,7 +587,7 @@ SolidMesh meshSolid(const SolidBoundary& given, const SolidOptions& wanted)
   }
   if (options.radiusEdgeRatio != 0.0 && !(options.radiusEdgeRatio > 1.0))
   {
-    throw Error("the ratio of radius and edge must be larger than 1, or 0 for none");
+    throw Error("the radius-edge ratio must be larger than 1, or 0 for no bound");
   }
   SolidMesh mesh;
   const int code = runWithin(boundary, options, mesh);
@@ -599,7 +598,7 @@ SolidMesh meshSolid(const SolidBoundary& given, const SolidOptions& wanted)
   if (mesh.tetrahedra.empty())
   {
     throw Error(
-      "there is nothing inside of the surface: is it closed, do the holes leave anything?");
+      "there is no region inside the surface: is it closed, and do the holes leave a region?");
   }
   scale(mesh.points, 1.0 / unit);
   mesh.faceMarkers.resize(mesh.faces.size() / 3, 1);

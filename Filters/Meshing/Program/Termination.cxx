@@ -16,7 +16,7 @@ namespace tautline
 bool endWithParent(pid_t parent, int signal)
 {
   ::prctl(PR_SET_PDEATHSIG, signal);
-  return ::getppid() == parent; // it may have ended before
+  return ::getppid() == parent; // the parent may already have ended
 }
 
 //------------------------------------------------------------------------------

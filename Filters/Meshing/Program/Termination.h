@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Termination.h
- * @brief How processes end with the one that started them.
+ * @brief Termination of processes together with their parent.
  */
 #ifndef tautline_Termination_h
 #define tautline_Termination_h
@@ -12,27 +12,27 @@
 
 namespace tautline
 {
-/// Lets the system send this process a signal when its parent ends, and returns whether the parent
+/// Makes the system send this process a signal when its parent ends, and returns whether the parent
 /// is still the given one.
 bool endWithParent(pid_t parent, int signal);
 
 /**
  * @class tautline::TerminationSignal
- * @brief While it exists, SIGTERM does not end the process but makes a file readable: so that a
- * child is ended and files are removed first.
+ * @brief While it exists, SIGTERM does not end the process but makes a file descriptor readable, so
+ * that a child can be ended and files removed first.
  */
 class TerminationSignal
 {
 public:
-  /// Throws Error where the system has no file left.
+  /// Throws Error if the system has no file descriptor left.
   TerminationSignal();
   ~TerminationSignal();
   TerminationSignal(const TerminationSignal&) = delete;
   TerminationSignal& operator=(const TerminationSignal&) = delete;
 
-  /// To be polled.
+  /// The file descriptor to poll.
   int file() const { return this->File; }
-  /// In a forked child: SIGTERM ends it.
+  /// In a forked child: restores the default, so that SIGTERM ends it.
   void release() const;
 
 private:

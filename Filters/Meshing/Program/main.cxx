@@ -26,11 +26,11 @@ using namespace tautline;
 
 constexpr int ExitUsage = 2;
 
-/// The two ends of the conversation. Throws Error where the other side has ended.
+/// The two ends of the connection. Throws Error if the other side has ended.
 class Channel
 {
 public:
-  /// Takes the standard input and output, so that what libraries print is not sent.
+  /// Takes over standard input and output, so that output printed by libraries is not sent.
   Channel()
     : In(::dup(STDIN_FILENO))
     , Out(::dup(STDOUT_FILENO))
@@ -79,7 +79,7 @@ private:
       const ssize_t count = ::write(this->Out, bytes, size);
       if (count < 0 && errno != EINTR)
       {
-        throw Error("nobody reads the answer");
+        throw Error("the reader of the answer has ended");
       }
       bytes += std::max<ssize_t>(0, count);
       size -= static_cast<std::size_t>(std::max<ssize_t>(0, count));
@@ -89,8 +89,8 @@ private:
   int In, Out;
 };
 
-/// Closes what the program that started this one has open and would expect to be closed when it
-/// ends: connections of a server, files.
+/// Closes inherited descriptors that the parent program expects to be closed when it ends: server
+/// connections, files.
 void closeInheritedFiles()
 {
   std::vector<int> files;
@@ -125,11 +125,11 @@ std::vector<char> answer(MessageReader& request, Mesh (*mesher)(const Boundary&,
 std::vector<char> mesh(Channel& channel, const std::string& version)
 {
   MesherMessage kind{};
-  const std::vector<char> bytes = channel.receive(kind); // all of it, else the answer is lost
+  const std::vector<char> bytes = channel.receive(kind); // all of it, otherwise the answer is lost
   if (version != tautline::version())
   {
-    throw Error(std::string("the package tautline-meshers is of version ") + tautline::version() +
-      ", the libraries are of version " + version + ": install the same version of both");
+    throw Error(std::string("the package tautline-meshers has version ") + tautline::version() +
+      ", the libraries have version " + version + ": install the same version of both");
   }
   MessageReader request(bytes);
   if (kind == MesherMessage::Planar)
@@ -148,7 +148,7 @@ std::vector<char> mesh(Channel& channel, const std::string& version)
   {
     return answer<SolidBoundary, SolidOptions, SolidMesh>(request, meshSolid, [](SolidOptions&) {});
   }
-  throw Error("this is no request for a mesh");
+  throw Error("this is not a request for a mesh");
 }
 
 int serve(const std::string& version)
@@ -172,7 +172,7 @@ int serve(const std::string& version)
       fail(MesherMessage::Failure, error.what());
     }
   }
-  catch (const std::exception&) // of the channel: there is nobody to report it to
+  catch (const std::exception&) // error of the channel, which cannot be reported
   {
   }
   return EXIT_FAILURE;
@@ -190,11 +190,11 @@ int main(int count, char** arguments)
   }
   if (count != 3)
   {
-    std::fputs("tautline-mesher meshes for the filters of Tautline, which start it\n", stderr);
+    std::fputs("tautline-mesher generates meshes for Tautline's filters, which start it\n", stderr);
     return ExitUsage;
   }
   std::signal(SIGPIPE, SIG_IGN);
-  std::signal(SIGINT, SIG_IGN); // of a terminal, sent to both: the parent decides
+  std::signal(SIGINT, SIG_IGN); // sent by a terminal to both: the parent decides
   closeInheritedFiles();
   if (!tautline::endWithParent(std::atoi(arguments[2]), SIGTERM))
   {
