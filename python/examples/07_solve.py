@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What bad elements cost a solver.
+"""The cost of bad elements for a solver.
 
 The same equation on the bracket before and after the optimization: the conjugate gradients take fewer iterations.
 

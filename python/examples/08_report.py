@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A report to send.
+"""Write a report.
 
 One HTML file with pictures, histograms and tables, before and after. It needs no display.
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Repair a turbine blade of hexahedra.
 
-A tenth of the hexahedra is folded, some of them between valid corners: the exact test finds these, too.
+A tenth of the hexahedra is folded, some of them between valid corners: the exact test also finds these.
 
 Shell: tautline untangle before.vtu -o after.vtu
 Look at: Minimum Jacobian, the smallest determinant anywhere in the element.

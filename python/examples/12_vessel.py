@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Widen a vessel to an aneurysm.
 
-The wall of a bent artery moves outwards in its middle; the tetrahedra inside follow. The displacement is an
+The wall of a bent artery moves outward in its middle; the tetrahedra inside follow. The displacement is an
 array of the
 points, made with numpy.
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The one worst element.
+"""Improve the worst element.
 
-A solver's time step depends on the worst element of a wrench. The preset "worst element" makes it as good as it gets,
-"best shape" the mean.
+A solver's time step depends on the worst element of a wrench. The preset "worst element" improves it as far as
+possible; "best shape" improves the mean.
 
 Shell: tautline optimize before.vtu --preset "worst element" -o after.vtu
 Look at: the two numbers printed: worst and mean of both presets.

@@ -4,7 +4,7 @@
 The target of every triangle of a wrench is the mean area; shape and size are optimized together.
 
 Shell: tautline optimize before.vtu --preset "uniform size" -o after.vtu
-Look at: the colours, Minimum Jacobian, which is twice the area of a triangle.
+Look at: the colors, Minimum Jacobian, which is twice the area of a triangle.
 State: OptimizeMesh(Input=before, Preset="Uniform size")
 Picture: min_jacobian
 """

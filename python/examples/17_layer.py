@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Stretch elements by a metric tensor.
 
-In the tensor's metric the wanted edges have length 1: short ones across the lower wall of a channel, long
+In the metric of the tensor, target edges have length 1: short ones across the lower wall of a channel, long
 ones along it.
 
 Look at: the rows of flat triangles at the wall.

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Two aims at once.
+"""Two objectives at once.
 
-Shape and size of the elements of a barrier contradict each other; a scalarization decides. The table has both
+Shape and size of the elements of a barrier conflict with each other; a scalarization decides. The table has both
 for several
 weights.
 
-Look at: the table that is printed; neither aim improves without the other becoming worse.
+Look at: the table that is printed; neither objective improves without the other becoming worse.
 Picture: imr
 """
 

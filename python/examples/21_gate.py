@@ -7,7 +7,7 @@ of each.
 Shell: tautline domain gate --cells 1000 -o before.vtu
 Shell: tautline warp before.vtu --displacement Displacement --method femwarp -o femwarp.vtu
 Shell: tautline warp before.vtu --displacement Displacement -o after.vtu
-Look at: the table; which linear methods fail, and that the hybrid one does not.
+Look at: the table; which linear methods fail, while the hybrid one does not.
 State: WarpMesh(Input=before, Motion="Displacement array", Displacement=["POINTS", "Displacement"])
 Picture: imr
 """

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Bend a bar.
 
-The bar bends by the domain's displacement; the fluid around it is what is meshed.
+The bar bends by the domain's displacement; the fluid around it is meshed.
 
 Shell: tautline domain bending-bar --cells 1200 -o before.vtu
 Shell: tautline warp before.vtu --displacement Displacement -o after.vtu

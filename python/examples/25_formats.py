@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""From one program to another.
+"""Convert meshes between programs.
 
 Gmsh's mesh with its regions to Medit, TetGen and VTK, and the metric as a view for Gmsh.
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A metric of your own.
+"""Define a metric of your own.
 
-The longest edge of each element by the shortest one, as a function of numpy; everything else knows it by its name.
+The longest edge of each element divided by the shortest one, as a numpy function; all functions accept its name.
 
 Look at: the new array, in the statistics and in the picture.
 Picture: edge_span

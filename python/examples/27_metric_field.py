@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a metric looks like.
+"""Plot a metric over the position of a vertex.
 
 The inverse mean ratio over the position of one corner of a triangle: flat near the ideal, infinite at the inversion.
 

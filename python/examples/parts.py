@@ -40,7 +40,7 @@ def flow_around_wing():
 
 
 def block(shape: tuple[int, int, int], place) -> tuple[np.ndarray, np.ndarray]:
-    """Hexahedra of a grid with so many cells; place maps its coordinates, n x 3 from 0 to 1, to points."""
+    """Hexahedra of a grid with these numbers of cells; place maps its coordinates, n x 3 from 0 to 1, to points."""
     counts = [n + 1 for n in shape]
     grid = np.stack(np.meshgrid(*(np.linspace(0, 1, n) for n in counts), indexing="ij"), axis=-1).reshape(-1, 3)
     number = np.arange(len(grid)).reshape(counts)

@@ -15,8 +15,8 @@ from texts import Failure, call, quoted, wrapped
 
 #: The last arguments of every function that has them.
 COMMON = ("time_limit", "threads", "merge_coincident_points", "reproducible_order", "redistribute")
-PROGRESS = """progress: True: a bar on the terminal, if there is one. Else a function, called ten times a second with
-    the fraction done, 0 to 1, and a text; it cancels by returning False, which raises Aborted. Ctrl-C raises
+PROGRESS = """progress: True: a bar on the terminal, if there is one. Otherwise a function, called ten times a second
+    with the fraction done, 0 to 1, and a text; it cancels by returning False, which raises Aborted. Ctrl-C raises
     KeyboardInterrupt."""
 MESH = "Given as {kind}, a composite data set, a file name or (points, cells). It is not changed."
 
@@ -44,7 +44,7 @@ class Function:
 
     @cached_property
     def words(self) -> dict[str, str]:
-        """Labels of the panel, and what they are in Python."""
+        """Labels of the panel, and their equivalents in Python."""
         claimed = {name for setter in self.setters for name in setter.properties}
         own = [p for p in self.properties if p.is_argument and p.argument_name and p.name not in claimed]
         words = {label: p.argument_name for p in own if " " in (label := p.element.get("label", p.name))}
@@ -169,7 +169,7 @@ class Function:
             return f"@interruptible\n{head}{self.docstring()}{self.body()}{made}"
         given = ["mesh"] if self.input else []
         given += [a.name if a.name in self.positional else f"{a.name}={a.name}" for a in self.arguments]
-        text = f'    """The filter that has run; the arguments are those of {self.name}()."""\n'
+        text = f'    """The filter that has run; with the arguments of {self.name}()."""\n'
         outer = call(f"filter_ = {inner}(", given, ")", 4)
         return (
             f"@interruptible\n{head}{self.docstring()}{outer}\n{made}\n\n"
@@ -228,7 +228,7 @@ class Function:
         return f"finish_{self.name}_of_several"
 
     def names(self) -> set[str]:
-        """What the code has to import."""
+        """The imports of the code."""
         found = {"Any", "interruptible", "run", "viewed", "watch", "Progress", self.result, f"{self.name}_result"}
         found |= {f"finish_{self.name}"} | {setter.name for setter in self.setters}
         found |= {self._several} if self._several in self.parts.functions else set()

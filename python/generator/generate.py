@@ -2,39 +2,39 @@
 """generate.py SOURCES PACKAGE XML...: writes Python functions and shell commands from the XML of the proxies.
 
 A proxy with the hint <Python function="..."/> becomes a function and a command. Each of its properties becomes an
-argument, with type, default, range, choices and documentation as in the XML, and an option of the command. What the XML
-of ParaView has no place for stands in further attributes, which ParaView ignores. Those of <Python>:
+argument, with type, default, range, choices and documentation as in the XML, and an option of the command. Data that
+ParaView's XML has no place for is in further attributes, which ParaView ignores. Attributes of <Python>:
 
     module       the file with the function, as in CAPABILITIES
     positional   the arguments that are not keyword-only, in order
     custom       the property whose value 0 shows others, whose arguments are None by default
     filter       the name of a function that returns the filter; with finish="filter", the command uses it
     help, details, example, aliases, csv, output
-                 of the command; csv: what --csv writes; output: the help of --output where that may be left out, ""
-                 where there is none
+                 of the command; csv: what --csv writes; output: the help of --output if that option is optional, ""
+                 if there is none
     text         the docstring around the arguments, after the line short_help
 
-Those of a property:
+Attributes of a property:
 
-    python          the name of the argument where it is not that of the property in snake case; "" is none. Of an
-                    <Entry>: the name of the choice where it is not the label.
-    python_default  the default in Python where it is not that of the panel; None leaves the property as it is
+    python          the name of the argument if it is not the property's name in snake case; "" is none. For an
+                    <Entry>: the name of the choice if it is not the label.
+    python_default  the default in Python if it differs from the panel's default; None leaves the property as it is
     python_type     the name of the type of an enumeration that several functions share
     python_true     the choice that True means; False is the first one
     python_above    the limit that a number has to exceed
     python_min, python_max
-                    the limits where they are not those of the panel; "inf" where there is none
-    shell           the help of the option where it is not the first sentence of the documentation; "" is no option
+                    the limits if they differ from the panel's limits; "inf" if there is none
+    shell           the help of the option if it is not the first sentence of the documentation; "" is no option
     shell_old       an older name of the option, or of --no-NAME
 
-What is not one property each is written by hand, in SOURCES/<module>_parts.py, which is read, not imported: nothing has
-to be compiled before.
+Arguments and results that are not one property each are written by hand, in SOURCES/<module>_parts.py, which is read,
+not imported, so nothing has to be compiled first.
 
     NAME_result(filter, output)     the result of a filter that has run; further parameters are arguments of NAME()
     finish_NAME(arguments, result)  prints it for the shell
     finish_NAME_of_several(arguments, measured)
-                                    the same of several meshes, where finish="filter"; measured(file) is the filter
-    NAME_input(filter, ...)         sets an input that is no mesh; its parameters are the first arguments
+                                    the same for several meshes, if finish="filter"; measured(file) is the filter
+    NAME_input(filter, ...)         sets an input that is not a mesh; its parameters are the first arguments
     @sets("NAME", "Property", ...)  a setter: its parameters with a default, and their docstring, become arguments of
                                     NAME(). Keyword-only ones are arguments that others declare; `custom` is a dict of
                                     the arguments that belong to the property custom.
@@ -135,7 +135,7 @@ def module_text(functions: list[Function], choices: dict[str, Choices], source: 
 
 
 def choices_text(choices: dict[str, Choices], labels: dict[str, set[str]], source: str) -> str:
-    """The module with all enumerations, and what the labels of the panels mean."""
+    """The module with all enumerations, and the meanings of the panel labels."""
     title = "The choices of the arguments, in the order of the filters' numbers, and the labels of the panels."
     lines = [HEAD.format(sources=source, title=title) + "from typing import Literal, get_args\n"]
     lines += [choices[name].code() for name in sorted(choices)]
@@ -166,7 +166,7 @@ def all_choices(functions: list[Function]) -> tuple[dict[str, Choices], dict[str
         found = prop.choices
         assert found is not None
         if choices.setdefault(found.type, found) != found:
-            raise Failure(f"{prop}: its entries are not those of another property of the type {found.type}")
+            raise Failure(f"{prop}: its entries differ from another property of the type {found.type}")
         for entry in prop.element.iterfind("EnumerationDomain/Entry"):
             label, name = entry.get("text", ""), entry.get("python")
             if name and folded(label) != folded(name):

@@ -13,7 +13,7 @@ SPACE = 4
 
 
 def capitalized(text: str, keys: bool = False) -> str:
-    """A sentence that begins a paragraph; names stay, with `keys` lists of names, too."""
+    """A sentence that begins a paragraph; names stay; with `keys`, lists of names also stay."""
     name = re.match(r"\w+_|\w\b" + (r"|\w+[,:]|\w+ \(" if keys else ""), text)
     return text[:1].upper() + text[1:] if text[:1].islower() and (not name or text.startswith("a ")) else text
 
@@ -23,7 +23,7 @@ def numpydoc(text: str, types: dict[str, str], returned: str, section: str = "Pa
 
     text: a summary, then paragraphs: entries "name: text", "Returns ...", "Raises Error ...", ">>> ...", and others,
     which are notes after the entries.
-    types: what follows the name of each entry. returned: the type that is returned, or "".
+    types: the text after the name of each entry. returned: the return type, or "".
     """
     parts = [part for part in re.split(r"\n\s*\n", text.strip("\n")) if part.strip()]
     summary, found = [parts[0]], {name: [] for name in (section, "Returns", "Raises", "Notes", "Examples")}
@@ -52,7 +52,7 @@ def numpydoc(text: str, types: dict[str, str], returned: str, section: str = "Pa
 
 
 def split_raises(words: str) -> tuple[str, str]:
-    """A paragraph without what it says of errors, and that."""
+    """A paragraph without its sentences about errors, and these sentences."""
     place = words.find("Raises Error")
     if place < 0:
         return words, ""
@@ -88,7 +88,7 @@ def title(name: str) -> str:
 
 
 def type_of(annotation: str, default: str | None, choices: set[str]) -> str:
-    """The type of a parameter as numpydoc has it, from its annotation and default."""
+    """The type of a parameter in numpydoc's form, from its annotation and default."""
     names = [part.strip() for part in re.split(r" \| (?![^\[]*\])", annotation)]
     words = ["str" if name in choices else "array_like" if name == "Values" else name for name in names]
     words = list(dict.fromkeys(word for word in words if word != "None"))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the generated functions have by hand: <module>_parts.py, which is read, not imported."""
+"""The handwritten parts of the generated functions: <module>_parts.py, which is read, not imported."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from texts import Failure
 
 @dataclass
 class Argument:
-    """An argument of a function: its place in the signature, its documentation, what sets it, and its option."""
+    """An argument of a function: its position in the signature, its documentation, its setter and its option."""
 
     name: str
     type: str
@@ -32,19 +32,19 @@ class Setter:
     name: str
     properties: list[str]
     parameters: list[str]
-    others: list[str]  # keywords, which are no arguments of its own
+    others: list[str]  # keywords, which are not its own arguments
     arguments: list[Argument]
 
 
 class Parts:
-    """What is written by hand: <module>_parts.py."""
+    """The handwritten parts: <module>_parts.py."""
 
     def __init__(self, path: Path) -> None:
         self.module = path.stem
         self.source = path.read_text(encoding="utf-8")
         tree = ast.parse(self.source)
         self.functions = {node.name: node for node in tree.body if isinstance(node, ast.FunctionDef)}
-        #: Where the names come from that this module has.
+        #: The origin of the names in this module.
         self.origin: dict[str, str] = {}
         for node in tree.body:
             if isinstance(node, ast.ImportFrom):
@@ -79,7 +79,7 @@ class Parts:
         return self._setter(node, [], required=True) if node else None
 
     def result(self, function: str) -> Setter:
-        """NAME_result(), whose parameters after the filter and its output are arguments, too."""
+        """NAME_result(), whose parameters after the filter and its output are also arguments."""
         return self._setter(self.functions[f"{function}_result"], [])
 
     def _setter(self, node: ast.FunctionDef, properties: list[str], required: bool = False) -> Setter:

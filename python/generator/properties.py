@@ -51,13 +51,13 @@ class Property:
 
     @cached_property
     def is_argument(self) -> bool:
-        """Whether it is set: not a result, nor the selection that a panel copies from the view."""
+        """Whether it is an input: neither a result nor the selection that a panel copies from the view."""
         selection = self.element.find("DataTypeDomain/DataType[@value='vtkSelection']") is not None
         return not (selection or self.element.get("information_only") == "1" or self.name == "Input")
 
     @cached_property
     def choices(self) -> Choices | None:
-        """The choices of an enumeration; none of the metrics, whose names are found at run time."""
+        """The choices of an enumeration; none for metrics, whose names are found at run time."""
         domain = self.element.find("EnumerationDomain")
         if domain is None or domain.find("RequiredProperties") is not None or not self.is_argument:
             return None
@@ -68,7 +68,7 @@ class Property:
 
     @cached_property
     def text(self) -> str:
-        """The documentation, in words of Python."""
+        """The documentation, in Python's terms."""
         text = self.function.translated(self.element.findtext("Documentation", ""))
         for entry in self.element.iterfind("EnumerationDomain/Entry"):
             label = entry.get("text", "")

@@ -12,7 +12,7 @@ SHORT, LONG = 40, 100  # for the help of an option
 
 
 class Failure(Exception):
-    """What is wrong in the XML, and where."""
+    """An error in the XML, with its place."""
 
 
 def snake(name: str) -> str:
@@ -21,7 +21,7 @@ def snake(name: str) -> str:
 
 
 def first_sentence(text: str) -> str:
-    """What the shell says of an option: the first sentence, or a part of it where it is long."""
+    """The shell's help of an option: the first sentence, or a part of it if it is long."""
     sentence = re.split(r"(?<=[^A-Z])\.(?= [A-Z\"]|$)", text, maxsplit=1)[0]
     ends = [match.start() for match in re.finditer(r"[;:] ", sentence) if match.start() > SHORT]
     ends = [end for end in ends if sentence[:end].count("(") == sentence[:end].count(")")]
@@ -29,7 +29,7 @@ def first_sentence(text: str) -> str:
 
 
 def folded(name: str) -> str:
-    """A label without what does not count, as in _names.py."""
+    """A label without characters that do not matter, as in _names.py."""
     return re.sub(r"[\s_-]", "", name).casefold()
 
 

@@ -20,7 +20,7 @@ def names() -> list[str]:
 
 
 def described(name: str) -> str:
-    """What a study regenerates."""
+    """The description of a study."""
     return (import_module(f"{__name__}.{name}").__doc__ or "").strip().split("\n")[0]
 
 

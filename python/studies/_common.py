@@ -33,7 +33,7 @@ OPTIMIZERS = {"nlcg": "local conjugate gradient", "newton": "local newton"}
 QUALITY_MARGIN = 0.01
 #: Qualities of methods with a comparable performance differ by at most this part.
 COMPARABLE = 0.1
-#: How a message of the optimizer begins where it converged, and where it could not go on.
+#: The first words of the optimizer's message after convergence, and after a failure to proceed.
 _CONVERGED, _STUCK = "Converged", ("No step", "No vertex")
 
 
@@ -69,7 +69,7 @@ class Run:
     seconds: np.ndarray
     #: Per quantity its value in each row.
     values: dict[str, np.ndarray]
-    #: The mesh after the last iteration, and why that was the last.
+    #: The mesh after the last iteration, and why it was the last.
     mesh: vtkDataSet
     reason: str
     #: Meshes after the iterations asked for.
@@ -84,7 +84,7 @@ class Run:
         return not self.failure and self.reason.startswith(_CONVERGED)
 
     def at(self, quantity: str, iteration: int) -> float:
-        """The value after an iteration; after the last one only if the run converged, else NaN."""
+        """The value after an iteration; after the last one only if the run converged, otherwise NaN."""
         series = self.seconds if quantity == "seconds" else self.values[quantity]
         if iteration > self.iterations[-1]:
             return float(series[-1]) if self.converged() else math.nan
@@ -106,7 +106,7 @@ class Run:
         return Times(self.repeated or (self.last_second(),))
 
 
-#: What is measured: name: (metric, aggregation of its values over the valid elements).
+#: The measured quantities: name: (metric, aggregation of its values over the valid elements).
 QUANTITIES: dict[str, tuple[str, Callable[[np.ndarray], float]]] = {
     "imr_mean": ("imr", np.mean),
     "imr_worst": ("imr", np.max),
@@ -262,7 +262,7 @@ def _configured(
 
     weights: further objectives and their weights; the scalarization is then the weighted sum, with 1 for the others.
     template: aggregation of the objectives of the method. patch_scalarization: combine the objectives' values on the
-    patch of a vertex instead of those on the whole mesh.
+    patch of a vertex instead of the values on the whole mesh.
     """
     filter_ = tautline.vtkMeshOptimizer()
     messages = watch(filter_)
@@ -275,7 +275,7 @@ def _configured(
     if patch_scalarization and len(method.objectives) + len(weights) > 1:
         filter_.SetPatchScalarization(True)
     filter_.SetOptimizer(pick("optimizer", OPTIMIZERS.get(optimizer, optimizer), OPTIMIZE_OPTIMIZERS))
-    filter_.SetHoldWorst(False)  # the methods of the dissertation promise nothing about single elements
+    filter_.SetHoldWorst(False)  # the methods of the dissertation guarantee nothing about single elements
     filter_.SetMaximumIterations(iterations)
     filter_.SetPatchIterations(patch_iterations)
     filter_.SetBeta(beta)
@@ -305,7 +305,7 @@ def _timed(filter_: Any, messages: Messages) -> np.ndarray:
     filter_.RemoveObserver(tag)
     count = filter_.GetHistory().GetNumberOfRows()
     seconds = np.array(stamps) - began
-    # The pipeline itself reports progress, too: 0 before and 1 after the filter's own.
+    # The pipeline itself also reports progress: 0 before and 1 after the filter's own.
     return seconds[len(seconds) - 1 - count : -1] if len(seconds) > count else np.resize(seconds, count)
 
 

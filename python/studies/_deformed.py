@@ -34,12 +34,12 @@ class Example:
     #: Inverted elements after FEMWARP and anisotropic FEMWARP.
     femwarp: int
     anisotropic: int | None
-    #: By how much anisotropic FEMWARP has fewer inverted elements, and whether that is the most over several amounts.
+    #: How many fewer inverted elements anisotropic FEMWARP has, and whether this is the maximum over several amounts.
     fewer: float | None
     at_most: bool
-    #: By how much less time (4.24) takes after anisotropic FEMWARP, the most over several amounts.
+    #: The time that (4.24) saves after anisotropic FEMWARP, the maximum over several amounts.
     faster: float | None
-    #: By how much the hybrid algorithm's worst element is better than FEMWARP's and UBN's. None: UBN fails.
+    #: The gain of the hybrid algorithm's worst element over FEMWARP's and UBN's. None: UBN fails.
     than_femwarp: float
     than_ubn: float | None
     #: xmin xmax ymin ymax of the close-up, of the mesh that has moved, per amount.
@@ -82,7 +82,7 @@ METHODS: dict[str, tuple[str, dict]] = {
 }
 #: The method whose second step is (4.24) itself.
 LITERAL = "hybrid-literal"
-#: Its iterations, if no other number is asked for. The dissertation names no criterion to stop.
+#: Its default number of iterations. The dissertation states no stopping criterion.
 ITERATIONS = 300
 #: (4.24) as section 4.9.2 gives it: local Polak-Ribiere conjugate gradients with Mesquite's default of steps, the upper
 #: end of the values of c, steps that may invert elements, and no stop by the change of the objective.
@@ -96,7 +96,7 @@ SECOND_STEP: dict[str, Any] = {
 
 
 class Setting(NamedTuple):
-    """What (4.24) depends on and the dissertation does not give."""
+    """Parameters of (4.24) that the dissertation does not give."""
 
     #: The unit of length, by the mean area or volume of the elements: it weighs the untangling against the shape.
     size: float
@@ -109,12 +109,13 @@ class Setting(NamedTuple):
 
 #: The first is the one of the studies of chapter 3.
 SETTINGS = (Setting(1.0, BETA), Setting(100.0, BETA), Setting(100.0, 0.1), Setting(1000.0, 0.1))
-#: Of the two with which (4.24) untangles all examples at the largest motion from either start, on the meshes of seed 1,
-#: the one with the smaller unit. Some sixteen settings were tried.
+#: Two settings untangle all examples with (4.24) at the largest motion from either start, on the meshes of seed 1; this
+#: is the one with the smaller unit. Some sixteen settings were tried.
 CHOSEN = SETTINGS[2]
 #: By how much the number of cells of the mesh of a seed differs from the number of seed 1.
 CELLS_BY_SEED = 0.03
-#: Upper ends of the bins of TMP shape in tables; what is above the last, or inverted, has columns of its own.
+#: Upper ends of the bins of TMP shape in tables; elements above the last one, and inverted ones, have their own
+#: columns.
 BINS = (0.1, 0.3, 1.0, 3.0, 10.0)
 _WARM, _COLD = "#d62728", "#1f4e79"
 
@@ -129,7 +130,7 @@ class Deformed:
     times: Times  # CPU seconds of the repetitions
     reached: float  # fraction of the motion: less than 1 where no further step was possible
     coefficients: tuple[float, float, float]
-    shapes: np.ndarray  # (4.22) of every element, inverted ones too
+    shapes: np.ndarray  # (4.22) of every element, including inverted ones
     #: Inverted elements after each iteration of (4.24), the first number is of its start; empty: (4.24) was not used.
     history: tuple[int, ...] = ()
 
@@ -269,7 +270,7 @@ def bin_names() -> list[str]:
 
 
 def lowered(ours: float, other: float) -> float:
-    """By which part of the other value ours is less; NaN where the other one is 0."""
+    """The reduction of ours relative to the other value; NaN if the other one is 0."""
     return 1 - ours / other if other else math.nan
 
 

@@ -27,7 +27,7 @@ def triangles(mesh: vtkDataSet) -> np.ndarray:
 
 
 def boundary_faces(mesh: vtkDataSet) -> np.ndarray:
-    """The faces of tetrahedra that only one of them has, with normals outwards."""
+    """The faces of tetrahedra that only one of them has, with normals outward."""
     cells = cells_of(mesh)
     faces = np.concatenate([cells[:, f] for f in ([1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1])])
     _, first, count = np.unique(np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True)
@@ -52,7 +52,7 @@ def loops(mesh: vtkDataSet) -> int:
 def surface_picture(report: Report, file: str, meshes: dict[str, vtkDataSet], columns: int, cut: bool = False) -> None:
     """Planar meshes, and boundaries of meshes in space.
 
-    cut: leave out the faces in front, those of the bounding box that face the viewer.
+    cut: leave out the faces in front, the faces on the bounding box that face the viewer.
     """
     if pyplot is None:
         return

@@ -71,7 +71,7 @@ def size_of(study: str) -> Size:
 
 
 def read(file: Path) -> dict[str, Any] | None:
-    """What a study wrote, as JSON has it; None where it did not run."""
+    """The JSON output of a study; None if it did not run."""
     return json.loads(file.read_text(encoding="utf-8")) if file.is_file() else None
 
 

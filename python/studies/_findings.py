@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Findings of the studies: what is stated, the criterion by which it is judged, and the verdict, of all seeds."""
+"""Findings of the studies: the statement, its criterion, and the verdict from all seeds."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class Finding:
     #: The table, figure or section that states it.
     source: str
     claim: str
-    #: What must be true of our numbers, chosen before they were computed.
+    #: The condition on our numbers, chosen before they were computed.
     criterion: str
     #: The dissertation's number, if it has one.
     stated: str
@@ -35,11 +35,11 @@ class Finding:
 
     @property
     def key(self) -> tuple[str, str]:
-        """What the findings of several seeds have in common."""
+        """The common key of the findings of several seeds."""
         return self.source, self.claim
 
     def row(self) -> dict[str, Any]:
-        """As JSON has it."""
+        """The finding as JSON."""
         return {**asdict(self), "seeds": list(self.seeds)}
 
     @staticmethod
@@ -59,7 +59,7 @@ def columns(finding: Finding) -> list[str]:
 
 
 def merged(findings: Iterable[Finding], seeds: int = 1) -> list[Finding]:
-    """One finding of those of several seeds with one source and claim, in the order of their first appearance."""
+    """One finding for the findings of several seeds with the same source and claim, in order of first appearance."""
     groups: dict[tuple[str, str], list[Finding]] = {}
     for finding in findings:
         groups.setdefault(finding.key, []).append(finding)
@@ -69,8 +69,8 @@ def merged(findings: Iterable[Finding], seeds: int = 1) -> list[Finding]:
 def _merge(group: Sequence[Finding], seeds: int) -> Finding:
     """The finding of several seeds.
 
-    Of the seeds that decide it, it holds if it holds with each, does not if it does with none, and varies else. It is
-    not decided if half of all seeds do not decide it.
+    Among the seeds that decide it: it holds if it holds with each, does not hold if it holds with none, and otherwise
+    varies. It is not decided if half of all seeds do not decide it.
     """
     first = group[0]
     if seeds == 1 or not first.seeds:
@@ -98,7 +98,7 @@ def _merge(group: Sequence[Finding], seeds: int) -> Finding:
 def spread(texts: dict[int, str]) -> str:
     """One text of the texts of several seeds that differ in their numbers: the median and the range of each number.
 
-    Texts that differ in words, too, follow one another.
+    Texts that also differ in words follow one another.
     """
     first = next(iter(texts.values()))
     if len(set(texts.values())) == 1:
@@ -113,9 +113,9 @@ def spread(texts: dict[int, str]) -> str:
 
 
 def number_range(texts: Sequence[str]) -> str:
-    """The median of numbers, and in brackets the least and the largest one, each as it is written.
+    """The median of numbers, and in brackets the smallest and the largest one, each as it is written.
 
-    Of an even number of them there is no one in the middle: the range alone.
+    An even number of them has no middle one: then only the range.
     """
     ordered = sorted(texts, key=_value)
     if ordered[0] == ordered[-1]:

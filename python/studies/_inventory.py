@@ -9,7 +9,7 @@ from typing import NamedTuple
 class Entry(NamedTuple):
     """A table or figure: its caption in short, its study, patterns of its files, and sections.
 
-    The files are pictures and tables; findings of the study on the sections belong to it, too.
+    The files are pictures and tables; findings of the study on the sections also belong to it.
     """
 
     name: str
@@ -172,7 +172,7 @@ CHAPTERS = {
     0: "This project's own statements",
 }
 
-#: Tables and figures that no study makes, and why.
+#: Tables and figures without a study, and why.
 NOT_MADE: dict[str, str] = {
     "Table 2.1, 2.2, 2.3, 2.5, 3.1": "definitions of notation, metrics, problems and combinations: no results",
     "Figure 1.3": "a picture of another work (fragmentation); there is no model of fracture here",

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Parts of a study that ran before: results of its long functions, kept in files, so that it goes on where it stopped.
+"""Parts of a study that ran before: results of its long functions, kept in files, so that it continues where it
+stopped.
 
 A result is found by the name of the function, its arguments (meshes by their points, cells and arrays) and the version
-of this package. A change of the package without a new version does not show: remove the folder then.
+of this package. A change of the package without a new version is not detected: remove the folder then.
 """
 
 from __future__ import annotations

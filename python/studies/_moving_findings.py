@@ -22,7 +22,7 @@ STARTS = ("FEMWARP", "anisotropic")
 LARGEST = 1.0  # the dissertation's largest motion; verdicts take no larger one
 MODERATE = 0.25  # times the largest motion: "small or moderate deformations" (section 4.7)
 RANKS = 0.5  # least rank correlation of two quantities of which one is said to grow with the other
-EQUAL = 1e-9  # relative, of values that are the same but for rounding
+EQUAL = 1e-9  # relative, for values that are equal up to rounding
 SCALE = 3.0  # of the mesh, for the invariance of the metric
 _COUNT = f"within {COUNT_TOLERANCE:.0%} of the printed count"
 FINER = 4  # times as many elements, to see how the counts depend on the mesh
@@ -30,7 +30,7 @@ FINER = 4  # times as many elements, to see how the counts depend on the mesh
 
 @dataclass
 class Left:
-    """What (4.24) makes of the mesh of FEMWARP and of anisotropic FEMWARP, with a setting."""
+    """The results of (4.24) from the meshes of FEMWARP and of anisotropic FEMWARP, with a setting."""
 
     inverted: tuple[int, int]
     #: Until no element is inverted; NaN: some are left.
@@ -103,7 +103,7 @@ def first_step(report: Report, example: Example, swept: Sweep, runs: dict[str, D
 
 
 def _unknown(swept: Sweep, start: str, which: int) -> str:
-    """Why a count is another one: how it depends on the motion and on the number of elements."""
+    """Why a count differs: its dependence on the motion and on the number of elements."""
     counts = ", ".join(f"{count:.0f} at {a:g}" for a, count in zip(swept["amount"], swept[start]))
     finer = f", and {swept.finer[which]} at 1 with {FINER} times as many elements" if swept.finer else ""
     return ("the count depends on the number of elements near the moving part, which is not given, and on the length "
@@ -131,7 +131,7 @@ def second_step(report: Report, example: Example, swept: Sweep, left: dict[str, 
     report.finding(meshes, f"{title}: the hybrid algorithm leaves no inverted elements",
                    any_of(run.inverted[1] == 0 for run in left.values()), figures, criterion=rule, stated="0",
                    reason=local)
-    report.finding("4.10", f"{title}: (4.24) eliminates the inverted elements of FEMWARP's mesh, too",
+    report.finding("4.10", f"{title}: (4.24) also eliminates the inverted elements of FEMWARP's mesh",
                    any_of(run.inverted[0] == 0 for run in left.values()), figures, criterion=rule, stated="0",
                    reason=local)
     useful = {setting: run.iterations for setting, run in left.items() if run.both()}
@@ -230,7 +230,7 @@ def _better(report: Report, source: str, subject: str, name: str, one: Deformed,
 
 
 def common(report: Report, sweeps: dict[str, Sweep], lefts: dict[str, dict[str, Left]]) -> None:
-    """What is stated of all examples together."""
+    """The statements on all examples together."""
     small = {title: [(s["FEMWARP"][i], s.worst[i][0]) for i in np.flatnonzero(s["amount"] <= MODERATE)]
              for title, s in sweeps.items()}
     report.finding("4.7", "FEMWARP creates good elements for small or moderate deformations",
@@ -284,7 +284,7 @@ def invariance(initial: vtkDataSet, deformed: Deformed) -> dict[str, float]:
 
 
 def metric(report: Report, changes: dict[str, float]) -> None:
-    """What section 4.9.2 states of the metric (4.22)."""
+    """The statements of section 4.9.2 on the metric (4.22)."""
     proof = "the formula has no size: |QT - adj(QT)^t| = |T - adj(T)^t| for a rotation Q"
     report.finding("4.9.2", "The TMP shape metric (4.22) is invariant to rotations", changes["rotated"] <= EQUAL,
                    f"changes by {changes['rotated']:.2g} of the largest value", criterion=f"at most {EQUAL:g}",

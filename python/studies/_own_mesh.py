@@ -29,10 +29,10 @@ COEFFICIENTS = {
 FUNCTIONS = {
     "source": "numbers, a point array or an expression of x, y, z",
     "fixed": "where the solution is given: an expression on the boundary, or an array",
-    "given": "the solution there; as the source",
+    "given": "the solution there, in the same form as the source",
     "tensor": "a cell array of tensors C of the general second-order equation",
 }
-#: What the equations take; others ignore or reject it.
+#: Options by equation; other equations ignore or reject them.
 OF = {"alpha": ("elliptic",), "beta": ("elliptic",), "gamma": ("elliptic",), "reaction": ("elliptic",),
       "tensor": ("elliptic",), "youngs_modulus": ("elasticity",), "poisson_ratio": ("elasticity",)}
 AS_GIVEN = "as given"
@@ -40,7 +40,7 @@ AS_GIVEN = "as given"
 
 def add_mesh_options(made: argparse.ArgumentParser) -> None:
     """--mesh and --metrics."""
-    made.add_argument("--mesh", metavar="FILE", help="a mesh of your own, any cells that the kernel takes; it is used "
+    made.add_argument("--mesh", metavar="FILE", help="a mesh of your own, of supported cells; it is used "
                       "as it is, and nothing is compared with the dissertation")
     made.add_argument("--metrics", nargs="+", metavar="NAME", help="metrics to smooth by (default: "
                       + ", ".join(METRICS) + "); with others nothing is compared with the dissertation")
@@ -73,7 +73,7 @@ def meshes(given: argparse.Namespace, size: int) -> dict[str, vtkDataSet]:
 
 
 def metrics_of(mesh: vtkDataSet, given: argparse.Namespace) -> list[str]:
-    """The chosen metrics; by default those of the dissertation that are defined on the cells of the mesh."""
+    """The chosen metrics; by default the dissertation's metrics that are defined on the cells of the mesh."""
     known = {facts["name"]: facts for facts in tautline.metrics()}
     if given.metrics:
         return list(given.metrics)

@@ -37,7 +37,7 @@ img { max-width: 100%; display: block; margin: 0.5em 0 } h3 { margin: 1.5em 0 0.
 
 @dataclass(frozen=True)
 class Study:
-    """What a study wrote, or why it failed."""
+    """The output of a study, or why it failed."""
 
     name: str
     text: str
@@ -62,7 +62,7 @@ def embedded(label: str, data: bytes) -> str:
 
 
 def study_in(name: str, text: str, folder: Path, width: int, show: Callable[[str, bytes], str] = embedded) -> Study:
-    """What a study wrote into a folder; its pictures have at most a width.
+    """The output of a study in a folder; its pictures have at most a width.
 
     show: makes an element of a label, STUDY/FILE, and a PNG file.
     """
@@ -84,7 +84,7 @@ def page(studies: dict[str, Study], small: bool) -> str:
 
 
 def pages(studies: dict[str, Study], second: str) -> tuple[str, str]:
-    """The report in two files: what is beyond tables and figures is in the second one, of this name."""
+    """The report in two files: the second one, of this name, has everything beyond tables and figures."""
     parts = _parts(studies, small=False, second=second)
     return "".join([*parts[:1], *parts[2:], _END]), "".join([_head("methods and further tables"), parts[1], _END])
 
@@ -98,9 +98,9 @@ def _head(title: str) -> str:
 
 
 def _parts(studies: dict[str, Study], small: bool, second: str = "") -> tuple[str, str, str]:
-    """The summary, tables and figures; what the studies have beyond; the lists at the end.
+    """The summary, tables and figures; further results of the studies; the lists at the end.
 
-    second: the file of what is beyond.
+    second: the file with everything beyond.
     """
     parts = [_head("what holds"), _introduction(studies, small), _summary(studies), _runs(studies), _overview(studies),
              "<h2>Tables and figures</h2>"]
@@ -241,7 +241,7 @@ def _findings_of(entry: Entry, studies: dict[str, Study]) -> list[Finding]:
 
 def _entry(entry: Entry, studies: dict[str, Study], shown: set[str], pictures: dict[tuple[str, str], str],
            listed: dict[tuple[str, str], str], second: str) -> str:
-    """A table or figure; findings and pictures that stand at an earlier one are not repeated."""
+    """A table or figure; findings and pictures of an earlier one are not repeated."""
     study = studies[entry.study]
     findings = _findings_of(entry, studies)
     new = [finding for finding in findings if finding.key not in listed]
@@ -268,7 +268,7 @@ def _entry(entry: Entry, studies: dict[str, Study], shown: set[str], pictures: d
 
 
 def _rest(study: Study, shown: set[str], pictures: dict[tuple[str, str], str]) -> str:
-    """What a study has beyond tables and figures: its paragraphs, its own findings, further tables and pictures."""
+    """Results of a study beyond tables and figures: its paragraphs, its own findings, further tables and pictures."""
     there = [finding for entry in ENTRIES for finding in _findings_of(entry, {study.name: study})]
     findings = [finding for finding in study.findings if finding not in there]
     texts = [_part(part) for part in study.parts if part.get("file", "") not in shown]

@@ -22,12 +22,13 @@ from ._meshes import scaled
 from ._report import Report, parser
 from ._verdicts import Times, Verdict, all_of, below, close, unless, word
 
-DOMAINS = ("disk3d", "disk2d", "barrier2d", "barrier3d")  # Figure 3.3; the first is that of tables and figures
+DOMAINS = ("disk3d", "disk2d", "barrier2d", "barrier3d")  # Figure 3.3; the first is used for tables and figures
 ITERATIONS = 20
 TABLE_ITERATIONS = (1, 5, 10, 20)
 CELLS, SMALL_CELLS = 1_000_000, 2_000
 REPEATS = 3
-#: Of the distance to inversion: brings the 3D disk as far from optimal as inversion-free moves of half the vertices do.
+#: Fraction of the distance to inversion: brings the 3D disk as far from optimal as inversion-free moves of half the
+#: vertices do.
 PERTURBATION = 0.95
 #: Complete smoothing takes significantly longer than the inaccurate one if it takes this multiple of its time.
 SIGNIFICANT_TIME = 2.0
@@ -61,7 +62,7 @@ def options(goals: Goals, text: str | None, arguments: Sequence[str]) -> argpars
     patch_option(made)
     given = made.parse_args(arguments)
     if given.mesh is None and given.metrics != list(goals.metrics):
-        raise Error("--metrics needs --mesh: the dissertation's numbers are those of its metrics")
+        raise Error("--metrics needs --mesh: the dissertation's numbers belong to its metrics")
     given.cells = given.cells or (SMALL_CELLS if given.small else CELLS)
     return given
 
@@ -120,7 +121,7 @@ def experiment(goals: Goals, given: argparse.Namespace, report: Report) -> Outco
     report.text(
         f"{first}: {mesh.GetNumberOfCells():,} elements, {mesh.GetNumberOfPoints():,} vertices, half of the interior "
         f"ones perturbed by up to {PERTURBATION:g} of the distance to inversion, boundary fixed.\n"
-        f"Unit of length: that in which {goals.unit[0]} starts at {goals.unit[1]:g} as in the dissertation (the "
+        f"Unit of length: the one in which {goals.unit[0]} starts at {goals.unit[1]:g} as in the dissertation (the "
         f"exponential and the equal sum depend on it). c = {TYPICAL_C:g}.\n"
         f"Local Polak-Ribiere conjugate gradients, {given.patch_iterations} steps per vertex and sweep; an iteration "
         "is a sweep over all vertices. For comparison Local Newton (over-relaxed, one step). Times are CPU seconds of "

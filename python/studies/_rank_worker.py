@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""_rank_worker.py FILE FUNCTION CELLS REPEATS: what a rank of the study `rank_scaling` does, for pvbatch --sym.
+"""_rank_worker.py FILE FUNCTION CELLS REPEATS: the work of a rank of the study `rank_scaling`, for pvbatch --sym.
 
-The mesh is cut in strips, one for each rank. Each rank writes the least wall-clock seconds of several runs, and its
+The mesh is cut in strips, one for each rank. Each rank writes the smallest wall-clock time of several runs, and its
 points or cells by their numbers with the result, to FILE.RANK.npz.
 """
 

@@ -68,7 +68,7 @@ def parser(name: str, text: str | None, cells: int = 0, threads: int | None = 1,
                           help="0 is all cores (%(default)s" + (", for comparable times)" if threads == 1 else ")"))
     if repeats:
         made.add_argument("--repeats", type=int, default=repeats, metavar="N",
-                          help="runs of what is timed; a verdict on times needs several (default: %(default)s)")
+                          help="runs of timed work; a verdict on times needs several (default: %(default)s)")
     if cells:
         made.add_argument("--cells", type=int, default=0, help=f"approximate number (default: {cells:,})")
     if steps:
@@ -135,18 +135,18 @@ class Report:
 
     @property
     def seeds(self) -> Iterator[int]:
-        """The seeds to run with, one after the other; what is reported belongs to the current one."""
+        """The seeds to run with, one after the other; reports belong to the current one."""
         for seed in range(1, getattr(self.given, "seeds", 1) + 1):
             self._seed = seed
             yield seed
 
     @property
     def findings(self) -> list[Finding]:
-        """One finding of those of all seeds."""
+        """One finding for the findings of all seeds."""
         return merged(self.recorded, getattr(self.given, "seeds", 1))
 
     def text(self, paragraph: str) -> None:
-        """A paragraph; those of later seeds are dropped."""
+        """A paragraph; paragraphs of later seeds are dropped."""
         if self._seed <= 1:
             self.parts.append(paragraph)
 
@@ -207,9 +207,9 @@ class Report:
                 reason: str = "", own: bool = False, proof: str = "") -> None:
         """Add a statement, and whether our numbers agree with it.
 
-        source: the table, figure or section that states it. ours: our numbers. criterion: what must be true of them for
-        the statement to hold; "": the claim says it. stated: the dissertation's number. reason: why it does not hold.
-        own: it is not a statement of the dissertation. proof: why a small mesh decides it, too.
+        source: the table, figure or section that states it. ours: our numbers. criterion: the condition on them for the
+        statement to hold; "": the claim says it. stated: the dissertation's number. reason: why it does not hold.
+        own: it is not a statement of the dissertation. proof: why a small mesh also decides it.
         """
         if self.small and not proof:
             verdict, why = TOO_SMALL, ""
@@ -360,7 +360,7 @@ class Report:
         return 0
 
     def record(self) -> dict[str, Any]:
-        """Everything but the pictures, as JSON has it."""
+        """Everything except the pictures, as JSON."""
         options = {key: value for key, value in vars(self.given).items()
                    if key not in ("out", "format", "resume") and value is not None}
         tables = {id(table): file for file, table in self._tables.items()}
@@ -384,7 +384,7 @@ class Report:
         return pyplot is not None
 
     def save(self, figure: Any, file: str) -> None:
-        """Save a figure of pyplot; those of later seeds are dropped."""
+        """Save a figure of pyplot; figures of later seeds are dropped."""
         if self._seed <= 1:
             figure.tight_layout()
             for kind in {"png", *self.given.format} & set(PICTURE_FORMATS):
@@ -408,13 +408,13 @@ def summary(found: Sequence[Finding]) -> str:
 
 
 def versions() -> dict[str, str]:
-    """What the numbers depend on."""
+    """The versions and the processor that the numbers depend on."""
     return {"tautline": tautline.__version__, "vtk": vtkVersion.GetVTKVersion(), "numpy": np.__version__,
             "python": platform.python_version(), "processor": processor()}
 
 
 def processor() -> str:
-    """The name of the processor where the system tells it, else its architecture."""
+    """The name of the processor if the system provides it, otherwise its architecture."""
     try:
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
     except OSError:

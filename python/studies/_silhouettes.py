@@ -13,7 +13,7 @@ import tautline
 from tautline._errors import Error
 
 _NOTE = (
-    "The dissertation's set are the 99 silhouettes of T. Sebastian, P. Klein and B. Kimia (Brown University). Give a "
+    "The dissertation's set is the 99 silhouettes of T. Sebastian, P. Klein and B. Kimia (Brown University). Give a "
     "folder with them by --data: it has a list labels.csv with the columns file and class, and a folder images. "
     "--unseen is for sets of other classes."
 )
@@ -99,7 +99,7 @@ def moved(images: list[np.ndarray], seed: int) -> list[np.ndarray]:
 
 
 def data_set(folder: str | None, small: bool, seed: int) -> tuple[list[np.ndarray], list[str], int, str]:
-    """Images, classes, number of matches that count, description: those of a folder, or the families if None.
+    """Images, classes, number of matches that count, description: from a folder, or the families if None.
 
     folder: has a list labels.csv, or images named by their class, see tautline.read_silhouettes(). With seed 1 its
     images are as they are, see moved() for others.

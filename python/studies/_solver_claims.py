@@ -22,7 +22,7 @@ Rows = dict[str, dict[int, Solve]]
 EIGENVALUE_ERROR = 1e-4
 #: The same of A, where metrics are compared, whose smallest eigenvalues have five digits in common.
 FINE_ERROR = 1e-7
-#: What a time depends on.
+#: The factors of a time.
 FACTORS = ("metric", "preconditioner", "solver")
 
 

@@ -110,7 +110,7 @@ BY_METRIC = {
     ),
 }
 
-#: Tables 2.9 and 2.12: by equation and domain, per fraction of perturbed vertices. The first rows are those of Tables
+#: Tables 2.9 and 2.12: by equation and domain, per fraction of perturbed vertices. The first rows come from Tables
 #: 2.8 and 2.11; where Table 2.9 (b) prints 44.5 iterations for combination 10, Table 2.8 has 445.
 BY_PERTURBATION = {
     ("poisson", "wrench"): _rows(

@@ -113,7 +113,7 @@ def smoothed(mesh: vtkDataSet, metric: str, threads: int) -> vtkDataSet:
 
 
 def template(metric: str) -> str:
-    """How the values of the elements are aggregated: (2.5) and (2.6); of other metrics in their own way."""
+    """How the values of the elements are aggregated: (2.5) and (2.6); other metrics have their own aggregation."""
     if metric not in METRICS:
         return "default"
     return "sum of squared reciprocals" if metric in ("si", "ss") else "sum of squares"
@@ -192,7 +192,7 @@ class Solve:
 
 @remembered
 def solve(mesh: vtkDataSet, problem: dict[str, Any], setup: Setup, **more: Any) -> dict[int, Solve]:
-    """Run combinations on one mesh; problem: options of solver_study(), such as those of PDES."""
+    """Run combinations on one mesh; problem: options of solver_study(), such as the entries of PDES."""
     options = {"combinations": list(setup.combinations), "combination_time_limit": setup.time_limit, "time_limit": 0.0,
                "conditions": False, "threads": setup.threads, **problem, **more}
     began = time.perf_counter()

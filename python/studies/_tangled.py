@@ -34,11 +34,11 @@ NOTE = (
     "the exponential sum is nearly the equal sum; the dissertation does not state which of them its figures are from. "
     "--patch-scalarization evaluates them there."
 )
-#: A weight that makes the untangling metric ineffective; without this metric tangled meshes are refused.
+#: A weight that makes the untangling metric ineffective; without this metric tangled meshes are rejected.
 _NEGLIGIBLE = 1e-30
 #: Growth of a mesh beyond which it counts as diverged; the sum of 1 / SI has no lower bound.
 _DIVERGED = 100.0
-#: How the reason of a run begins that diverged: its method fails, not its optimizer.
+#: The first words of the reason of a run that diverged: its method fails, not its optimizer.
 DIVERGED = "Diverged"
 
 
@@ -91,7 +91,7 @@ def untangle(mesh: vtkDataSet, method: Method, iterations: int, quantities: Iter
 
 
 def _weights(method: Method) -> list[tuple[str, float]]:
-    """Further objectives with negligible weights, without which tangled meshes are refused."""
+    """Further objectives with negligible weights, without which tangled meshes are rejected."""
     return [] if "untangle_beta" in method.objectives else [("untangle_beta", _NEGLIGIBLE)]
 
 
@@ -176,8 +176,8 @@ def settings(report: Report, mesh: vtkDataSet, objectives: Sequence[str], iterat
              betas: Sequence[float] = BETAS, **options: Any) -> dict[str, dict[str, Run]]:
     """The runs of several objectives and of untangling alone in settings that the dissertation does not state.
 
-    units: mean sizes of the elements; none: that of the mesh, which the dissertation states. A table says when all
-    elements are valid.
+    units: mean sizes of the elements; none: the mean size of the mesh, which the dissertation states. A table says when
+    all elements are valid.
     """
     dimension = cells_of(mesh).shape[1] - 1
     mean = float(np.mean(np.abs(sizes_of(mesh))))
@@ -197,7 +197,7 @@ def settings(report: Report, mesh: vtkDataSet, objectives: Sequence[str], iterat
     report.table("settings", f"Other settings, {iterations} iterations: after which iteration all elements are valid",
                  ["mean size", "beta / mean", "combined on", "c", *(m.name for m in every)], rows)
     report.text(
-        "Rows repeat where the largest value of the untangling metric is below that of the other metrics: the "
+        "Rows repeat where the largest value of the untangling metric is below the values of the other metrics: the "
         "optimizer then rescales it as in section 3.3.3, which eliminates the unit."
     )
     return found
@@ -214,7 +214,7 @@ def in_settings(found: dict[str, dict[str, Run]], test: Callable[[dict[str, Run]
 
 
 def until_all(found: dict[str, dict[str, Run]], names: Iterable[str]) -> str:
-    """The iterations after which no element is inverted, the least and the largest of the settings."""
+    """The iterations after which no element is inverted, the smallest and the largest over the settings."""
     def text(name: str) -> str:
         done = [untangled_after(runs[name]) for runs in found.values()]
         known = [d for d in done if math.isfinite(d)]

@@ -12,7 +12,7 @@ from ._solvers import AMG, LABELS, SOLVERS, TITLES, most_of, trouble
 from ._verdicts import GAIN_RULE, Open, Times, Verdict, all_of, any_of, faster, gain, less, unless
 
 JACOBI_GMRES, ILU_CG, ILU_MINRES, CG_AMG = 2, 9, 11, 13
-#: The best and the worst (metric, combination) that the text names, and how much less the solver time of the best is.
+#: The best and the worst (metric, combination) that the text names, and how much less solver time the best one takes.
 SOLVER_CLAIMS = {
     "poisson": (("imr", CG_AMG), ("imr", JACOBI_GMRES), 0.97),
     "elliptic": (("rr", CG_AMG), ("si", JACOBI_GMRES), 0.95),
@@ -24,7 +24,7 @@ TOTAL_CLAIMS = {
     "poisson": ((CG_AMG, 0.90), (JACOBI_GMRES, 0.45)),
     "elasticity": ((ILU_MINRES, 0.71), (JACOBI_GMRES, 0.16)),
 }
-#: The combinations that have the least total time, with IMR.
+#: The combinations with the smallest total time, with IMR.
 BEST_TOTAL = {"poisson": (CG_AMG,), "elliptic": AMG, "elasticity": (ILU_CG, ILU_MINRES)}
 #: "IMR > RR > SI > SS", from the fastest to the slowest.
 ORDER = METRICS
@@ -62,7 +62,7 @@ def total_findings(report: Report, pde: str, domain: str, rows: Rows, smooth: di
     if all(n in rows[m] for m, n in ends):
         best, worst = (rows[m][n] for m, n in ends)
         why = trouble(rows[ends[0][0]], [ends[0][1]]) or trouble(rows[ends[1][0]], [ends[1][1]])
-        report.finding(where, f"The solver time of the best combination is {share:.0%} less than that of the worst one",
+        report.finding(where, f"The solver time with the best combination is {share:.0%} less than with the worst one",
                        unless(why, gained(best.times, worst.times, share)),
                        "; ".join(f"{m}, {LABELS[n]} {rows[m][n].times}" for m, n in ends)
                        + f": {1 - best.seconds / worst.seconds:.1%}",
@@ -88,7 +88,7 @@ def total_findings(report: Report, pde: str, domain: str, rows: Rows, smooth: di
 
 
 def best_findings(report: Report, where: str, pde: str, found: dict[tuple[str, int], Times]) -> None:
-    """The metric and combination with the least total time."""
+    """The metric and combination with the shortest total time."""
     group = [("imr", n) for n in BEST_TOTAL[pde] if ("imr", n) in found]
     missing = [Open(f"{LABELS[n]} failed") for n in BEST_TOTAL[pde] if ("imr", n) not in found]
     others = [t for key, t in found.items() if key not in group]
@@ -139,7 +139,7 @@ def sensitivity_findings(report: Report, pde: str, domain: str, rows: Rows) -> N
     largest = max(by_solver[BICGSTAB], default=math.nan)
     others = [v for i, values in by_solver.items() if i != BICGSTAB for v in values]
     few = sum(v < SMALL_VARIATION for v in others)
-    report.finding(where, "The iterations of Bi-CGSTAB vary by more than 20 %, those of the others mostly by less than "
+    report.finding(where, "The iterations vary by more than 20 % with Bi-CGSTAB, with the others mostly by less than "
                    "10 %", unless(why, largest > LARGE_VARIATION and 2 * few > len(others)),
                    f"Bi-CGSTAB up to {largest:.1%}; {few} of {len(others)} others below {SMALL_VARIATION:.0%}",
                    criterion=f"a combination of Bi-CGSTAB above {LARGE_VARIATION:.0%}, more than half of the others "

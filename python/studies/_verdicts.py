@@ -33,7 +33,7 @@ NOT_DECIDED, TOO_SMALL = "not decided", "too small to decide"
 #: All of them, in the order of reports.
 WORDS = (HOLDS, DOES_NOT_HOLD, VARIES, NOT_DECIDED, TOO_SMALL)
 
-#: Times that differ by a smaller part are taken for equal: what runs of one program on an idle machine differ by.
+#: Times that differ by a smaller part are regarded as equal: the variation of one program on an idle machine.
 TIME_MARGIN = 0.05
 #: A number is about as large as the printed one between these multiples of it: meshes and machines are other ones.
 GAIN_BAND = (0.5, 2.0)
@@ -52,17 +52,17 @@ def word(verdict: Verdict) -> str:
 
 
 def all_of(verdicts: Iterable[Any]) -> Verdict:
-    """Whether all hold: False if one does not, else not decided if one is not, or if there is none."""
+    """Whether all hold: False if one does not, otherwise not decided if one is not, or if there is none."""
     return _joined(verdicts, False)
 
 
 def any_of(verdicts: Iterable[Any]) -> Verdict:
-    """Whether one holds: True if one does, else not decided if one is not, or if there is none."""
+    """Whether one holds: True if one does, otherwise not decided if one is not, or if there is none."""
     return _joined(verdicts, True)
 
 
 def _joined(verdicts: Iterable[Any], decisive: bool) -> Verdict:
-    """The decisive verdict if it is among them, else the first that is not decided, else the other one."""
+    """The decisive verdict if it is among them, otherwise the first that is not decided, otherwise the other one."""
     found = list(verdicts)
     undecided = [v for v in found if isinstance(v, Open)]
     if any(bool(v) is decisive for v in found if not isinstance(v, Open)):
@@ -130,7 +130,7 @@ class Times:
 
     @property
     def middle(self) -> float:
-        """The median, of an even number of runs the slower one in the middle: what is slower was disturbed."""
+        """The median; for an even number of runs the slower one in the middle, because slower runs were disturbed."""
         return sorted(self.runs)[len(self.runs) // 2]
 
     @property

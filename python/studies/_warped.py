@@ -41,7 +41,7 @@ def harmonic(mesh: vtkDataSet, given: np.ndarray) -> np.ndarray:
 def warp(
     mesh: vtkDataSet, points: np.ndarray, motion: np.ndarray, inverted: int, limit: float
 ) -> tuple[vtkDataSet, float]:
-    """The mesh at points + t motion with the least t up to `limit` that inverts this number of elements, and t."""
+    """The mesh at points + t motion with the smallest t up to `limit` that inverts this number of elements, and t."""
 
     def moved(amount: float) -> tuple[vtkDataSet, int]:
         result = with_points(mesh, points + amount * motion)

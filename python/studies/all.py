@@ -101,7 +101,7 @@ def result(name: str, given: argparse.Namespace, place: str) -> Study:
 
 
 def _read(name: str, folder: Path, width: int) -> Study:
-    """What a study wrote; files of another version are its error."""
+    """The output of a study; files of another version are its error."""
     try:
         return study_in(name, described(name), folder, width)
     except (KeyError, TypeError, ValueError) as error:

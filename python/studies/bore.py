@@ -36,7 +36,7 @@ def main(arguments: list[str]) -> int:
     report = Report("bore", "Bore in space (section 3.5.2)", given)
     report.text(
         "The dissertation uses meshes of other authors; this one is the project's domain `bore`, a block with "
-        "a bore that widens in the middle. Its condition numbers (Table 3.9) are those of the study conditioning."
+        "a bore that widens in the middle. Its condition numbers (Table 3.9) are in the study conditioning."
     )
     iterations = SMALL_ITERATIONS if given.small else STEPS[-1]
     for seed in report.seeds:

@@ -225,7 +225,7 @@ def _lowered(points: np.ndarray, corners: np.ndarray, vertex: int, part: float) 
 
 
 def flat_element(report: Report, threads: int) -> dict[float, list[float]]:
-    """What one flat element does to the spectrum: by its volume over that before."""
+    """The effect of one flat element on the spectrum: by its volume over its volume before."""
     found = {volume: spectrum(mesh, threads) for volume, mesh in zip(FLAT_VOLUMES, flattened(FLAT_VOLUMES))}
     report.table("flat_element", f"The bore of about {FLAT_CELLS:,} elements, one with three free vertices flattened",
                  ["volume", *COLUMNS], [[volume, *row] for volume, row in found.items()])
@@ -233,7 +233,7 @@ def flat_element(report: Report, threads: int) -> dict[float, list[float]]:
 
 
 def flat_findings(report: Report, found: dict[float, list[float]]) -> None:
-    """What Table 3.9 looks like: one flat element."""
+    """The apparent cause of Table 3.9: one flat element."""
     *_, before, last = (found[volume] for volume in FLAT_VOLUMES)
     growth = FLAT_VOLUMES[-2] / FLAT_VOLUMES[-1]
     report.finding("Table 3.9", "One nearly flat element with three free vertices gives a largest eigenvalue of 3, and "
@@ -272,7 +272,7 @@ def disk_findings(report: Report, found: dict[str, list[float]]) -> None:
           TABLE_3_10)
     least(report, "3.5.3", "Size alone shows the slowest convergence", found, rest, ["size"], COUNT, TABLE_3_10)
     as_printed(report, "Table 3.10", found, TABLE_3_10,
-               "the printed smallest eigenvalues are those of a disk with about "
+               "the printed smallest eigenvalues match a disk with about "
                f"{disk_vertices(PRINTED_SMALLEST):,.0f} vertices, "
                f"{2 * disk_vertices(PRINTED_SMALLEST):,.0f} triangles, "
                "not 500,000; the condition number grows with the number of vertices")
@@ -281,7 +281,7 @@ def disk_findings(report: Report, found: dict[str, list[float]]) -> None:
 def disk_vertices(smallest: float) -> float:
     """The vertices of a disk of nearly equilateral triangles whose preconditioned matrix has a smallest eigenvalue.
 
-    x'Ax / x'Dx, with D = 2 sqrt(3) and the same area per vertex, is at its minimum that of the disk.
+    x'Ax / x'Dx, with D = 2 sqrt(3) and the same area per vertex, has the disk's eigenvalue as its minimum.
     """
     return float(DISK_EIGENVALUE * np.pi / EQUILATERAL_DIAGONAL / smallest)
 
@@ -304,7 +304,7 @@ def main(arguments: list[str]) -> int:
     report.text(
         "Poisson's equation with f = 1 and u = 0 on the boundary, solved by MINRES with Jacobi's preconditioner as in "
         "sections 1 and 3.5: P is the diagonal of A; eigenvalues of P^-1 A to a relative error of "
-        f"{EXPECTED_ERROR:g}; iterations to a relative preconditioned residual of 1e-5. The meshes are those of the "
+        f"{EXPECTED_ERROR:g}; iterations to a relative preconditioned residual of 1e-5. The meshes come from the "
         "studies hydrocephalus, bore and shape_size after the last iteration of local conjugate gradients."
     )
     rows = [*warped(report, given), *sized(report, given)]

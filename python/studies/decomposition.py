@@ -24,7 +24,7 @@ from ._report import Report, parser
 from ._verdicts import Open, Verdict, all_of
 
 PARTS, SMALL_PARTS = (2, 4, 8, 16, 32, 64), (2, 4, 8)
-#: Of the weak series: parts beyond those, which the model predicts.
+#: Numbers of parts beyond the weak series, which the model predicts.
 BEYOND, SMALL_BEYOND = 256, 16
 CELLS, SMALL_CELLS = {"disk3d": 400_000, "disk2d": 200_000}, {"disk3d": 3_000, "disk2d": 1_500}
 #: Cells of each part in the weak series, in space.
@@ -32,7 +32,7 @@ PER_PART, SMALL_PER_PART = 2_000, 250
 #: Cells per part, parts: of the series that shows how a halo grows with the size of a part.
 SIZES, SMALL_SIZES = (1_000, 2_000, 4_000, 8_000, 16_000), (200, 400, 800)
 SIZE_PARTS, SMALL_SIZE_PARTS = 27, 8
-#: What a rank sends of a point that has moved: x y z and a flag, in double precision.
+#: The data that a rank sends of a point that has moved: x y z and a flag, in double precision.
 POINT_BYTES = 32
 #: Exchanges of one number with all ranks at the end of a sweep (LocalSweeper), their bytes per rank, and the collective
 #: operations of each: one for lengths, one for values.
@@ -63,7 +63,7 @@ class Division:
     balance: float  # cells, over the mean
     halo: int
     mean_halo: float
-    neighbours: int
+    neighbors: int
     messages: int  # that a part sends in a sweep
     bytes: int
     sets: int
@@ -132,7 +132,7 @@ def divided(mesh: vtkDataSet, method: str, parts: int) -> np.ndarray:
 
 @remembered
 def counted(mesh: vtkDataSet, method: str, parts: int) -> Division:
-    """Divide a mesh and count what the kernel's sweeps would send; of several divisions that with the median halo."""
+    """Divide a mesh and count what the kernel's sweeps would send; of several divisions, the median halo counts."""
     found = sorted((counted_once(mesh, method, parts) for _ in range(RUNS if method == "graph" else 1)),
                    key=lambda d: d.halo)
     chosen = found[len(found) // 2]
@@ -157,7 +157,7 @@ def counted_once(mesh: vtkDataSet, method: str, parts: int) -> Division:
         balance=float(column["Cells"].max() / column["Cells"].mean()),
         halo=int(column["Halo Points"].max()),
         mean_halo=float(column["Halo Points"].mean()),
-        neighbours=int(column["Neighbours"].max()),
+        neighbors=int(column["Neighbours"].max()),
         messages=int(column["Messages"].max()),
         bytes=POINT_BYTES * int(column["Sent Points"].max()),
         sets=decomposition.GetNumberOfSets(),
@@ -173,15 +173,15 @@ def counted_once(mesh: vtkDataSet, method: str, parts: int) -> Division:
 
 @dataclass
 class Model:
-    """What a sweep costs a rank with a number of cells."""
+    """The cost of a sweep for a rank with a number of cells."""
 
     halo: float  # points of the halo, of cells ** exponent
     exponent: float
-    neighbours: float
+    neighbors: float
     sets: float
     points: float  # free points per cell
     waiting: float  # points for which a rank waits for others, of (points x sets) ** 0.5
-    sent: float  # points that a rank sends, of those in its halo
+    sent: float  # points that a rank sends, relative to its halo
     second: float  # CPU, of a point in a sweep
     latency: float
     bandwidth: float
@@ -201,7 +201,7 @@ class Model:
         return {
             "points": self.second * free,
             "waiting": self.second * (self.slowest(cells) - free),
-            "messages": self.latency * self.neighbours * self.sets,
+            "messages": self.latency * self.neighbors * self.sets,
             "bytes": POINT_BYTES * self.sent * self.halo_of(cells) / self.bandwidth,
             "collective": REDUCTIONS * (OPERATIONS * rounds * self.latency + ranks * REDUCED_BYTES / self.bandwidth),
         }
@@ -209,10 +209,10 @@ class Model:
     def symbols(self) -> dict[str, float]:
         """The numbers of FORMULA."""
         return {"t": self.second, "f": self.points, "w": self.waiting, "S": self.sets, "L": self.latency,
-                "K": self.neighbours, "s": self.sent, "h": self.halo, "b": self.exponent, "B": self.bandwidth}
+                "K": self.neighbors, "s": self.sent, "h": self.halo, "b": self.exponent, "B": self.bandwidth}
 
     def efficiency(self, cells: float, ranks: int) -> float:
-        """The time of one rank with as many cells over that of many ranks."""
+        """The ratio of the times of one rank and of many ranks, with as many cells each."""
         parts = self.parts_of(cells, ranks)
         return parts["points"] / max(sum(parts.values()), math.ulp(0.0))
 
@@ -224,12 +224,12 @@ def slope(sizes: Sequence[float], values: Sequence[float]) -> tuple[float, float
 
 
 def fitted(sizes: dict[int, Division], weak: dict[int, Division], second: float, given: argparse.Namespace) -> Model:
-    """The model from the halo by size of a part, and the counts of the weak series but for its last."""
+    """The model from the halo by size of a part, and the counts of the weak series without its last."""
     last = weak[max(list(weak)[:-1])]
     parts = max(list(weak)[:-1])
     factor, exponent = slope(list(sizes), [d.halo for d in sizes.values()])
     free = last.free / parts
-    return Model(factor, exponent, last.neighbours, last.sets, free / (last.cells / parts),
+    return Model(factor, exponent, last.neighbors, last.sets, free / (last.cells / parts),
                  (last.slowest - free) / math.sqrt(free * last.sets), last.bytes / POINT_BYTES / max(1, last.halo),
                  second, given.latency, given.bandwidth)
 
@@ -245,13 +245,13 @@ def second_per_point(mesh: vtkDataSet, free: int) -> float:
 
 # --- the study ------------------------------------------------------------------------------------------------
 
-COLUMNS = ("parts", "largest / mean cells", "largest halo", "mean halo", "neighbours", "messages", "kB", "waiting %",
+COLUMNS = ("parts", "largest / mean cells", "largest halo", "mean halo", "neighbors", "messages", "kB", "waiting %",
            "CPU s")
 
 
 def row(d: Division, parts: int) -> list:
     waiting = 100 * (d.slowest * parts / d.free - 1)
-    return [parts, d.balance, d.halo, d.mean_halo, d.neighbours, d.messages, d.bytes / 1000, waiting, d.seconds]
+    return [parts, d.balance, d.halo, d.mean_halo, d.neighbors, d.messages, d.bytes / 1000, waiting, d.seconds]
 
 
 def main(arguments: list[str]) -> int:
@@ -266,8 +266,8 @@ def main(arguments: list[str]) -> int:
     report = Report("decomposition", "Divisions of a mesh for many ranks", given)
     parts = SMALL_PARTS if given.small else PARTS
     report.text(
-        "What was asked (outlook of the dissertation): the best decomposition of the domain for an optimizer on many "
-        "processes. Counts are those of the kernel's own order: independent sets move one after the other, after each "
+        "Question (outlook of the dissertation): the best decomposition of the domain for an optimizer on many "
+        "processes. Counts refer to the kernel's own order: independent sets move one after the other, after each "
         f"of them a rank sends its points ({POINT_BYTES} bytes each) in one message to every rank with a copy. They "
         "are the largest of any part, for one sweep. The boundary is fixed. The optimized points are the same "
         "for every division, to rounding, so that quality does not depend on it. Slabs, k-d tree and curve are divided "
@@ -290,7 +290,7 @@ def main(arguments: list[str]) -> int:
 
 
 def scaling(report: Report, given: argparse.Namespace, parts: Sequence[int]) -> None:
-    """The weak series, the model and what it predicts."""
+    """The weak series, the model and its predictions."""
     per_part = SMALL_PER_PART if given.small else PER_PART
     beyond = SMALL_BEYOND if given.small else BEYOND
     weak, mesh = {}, None
@@ -329,7 +329,7 @@ def scaling(report: Report, given: argparse.Namespace, parts: Sequence[int]) -> 
 
 
 def explained(model: Model) -> str:
-    """What breaks weak scaling, from the numbers."""
+    """The limits of weak scaling, from the numbers."""
     rank_cells = RANK_CELLS[1]
     parts = model.parts_of(rank_cells, max(RANKS))
     rest = {name: seconds for name, seconds in parts.items() if name != "points"}
@@ -340,14 +340,14 @@ def explained(model: Model) -> str:
     return (
         f"The model: a point takes {1e6 * model.second:.3g} microseconds in a sweep; a part of n cells has "
         f"{model.points:.3g} n free points, a halo of {model.halo:.3g} n^{model.exponent:.3g} points and "
-        f"{model.neighbours:g} neighbours; {model.sets:g} sets follow each other. All ranks wait for the slowest one "
+        f"{model.neighbors:g} neighbors; {model.sets:g} sets follow each other. All ranks wait for the slowest one "
         f"after each set, for {model.waiting:.3g} times the root of (free points x sets), in points. A rank sends "
         f"{model.sent:.3g} times the points of its halo. In seconds, with n cells on each of P ranks: {FORMULA}, where "
         f"{', '.join(f'{name} = {value:.4g}' for name, value in model.symbols().items())}. With "
-        f"{rank_cells:,} cells on each of {max(RANKS):,} ranks, of what is not the moving of own points "
-        f"{max(rest, key=lambda name: rest[name])} takes the most: {others}. The halo is that of {SIZE_PARTS} parts, "
+        f"{rank_cells:,} cells on each of {max(RANKS):,} ranks, apart from moving own points, "
+        f"{max(rest, key=lambda name: rest[name])} takes the most time: {others}. The halo is for {SIZE_PARTS} parts, "
         "most of which are at the boundary of the domain: parts inside have larger ones, whose bytes cost little.\n"
-        "What breaks it: (1) few cells per rank: waiting and messages do not shrink with the cells as the work does; "
+        "Its limits: (1) few cells per rank: waiting and messages do not shrink with the cells as the work does; "
         f"(2) exchanges of a number with all ranks send it from each rank to each: from about {ranks:,} ranks "
         "they take a tenth of the time of the points; (3) filters that gather the mesh on the first rank do not scale "
         "at all."
@@ -401,7 +401,7 @@ def division_findings(report: Report, found: dict[str, dict[str, dict[int, Divis
 
 def scaling_findings(report: Report, weak: dict[int, Division], exponent: float, predicted: dict[str, float],
               efficiencies: dict[int, float], shares: dict[str, float]) -> None:
-    """Parts of one size in more and more of them, and what the model says of 1,024 ranks.
+    """Parts of one size in more and more of them, and the model's prediction for 1,024 ranks.
 
     predicted: counts of the last of the series. efficiencies: by cells of a rank. shares: seconds of a sweep.
     """
@@ -411,11 +411,11 @@ def scaling_findings(report: Report, weak: dict[int, Division], exponent: float,
     *parts, beyond = weak
     last, before = weak[parts[-1]], weak[parts[-2]]
     where = "weak scaling"
-    finding(where, f"The largest halo of {parts[-1]} parts is at most {SAME_HALO:g} times that of {parts[-2]}",
+    finding(where, f"From {parts[-2]} to {parts[-1]} parts the largest halo grows at most {SAME_HALO:g} times",
             last.halo <= SAME_HALO * before.halo, f"{before.halo}, {last.halo} points")
-    finding(where, f"A part has at most {WIDEST} neighbours, with {beyond} parts, too",
-            max(d.neighbours for d in weak.values()) <= WIDEST,
-            ", ".join(f"{n}: {d.neighbours}" for n, d in weak.items()))
+    finding(where, f"A part has at most {WIDEST} neighbors, also with {beyond} parts",
+            max(d.neighbors for d in weak.values()) <= WIDEST,
+            ", ".join(f"{n}: {d.neighbors}" for n, d in weak.items()))
     finding(where, "Halos grow with the surface of a part, cells^(2/3)",
             abs(exponent - SURFACE) <= SURFACE_TOLERANCE, f"exponent {exponent:.3f}", f"within {SURFACE_TOLERANCE:g}")
     measured = weak[beyond].slowest

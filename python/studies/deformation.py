@@ -58,7 +58,7 @@ def sweep(report: Report, example: Example, moving: Moving, amounts: Sequence[fl
 
 def by_setting(report: Report, example: Example, moving: Moving, starts: Sequence[Deformed],
                limit: int) -> dict[str, Left]:
-    """Whether (4.24) untangles the largest motion, by what the dissertation does not give."""
+    """Whether (4.24) untangles the largest motion, by the parameters that the dissertation does not give."""
     rows, found = [], {}
     for setting in SETTINGS:
         runs = [untangled(moving.mesh, w.mesh, limit, 1, setting) for w in starts]
@@ -162,8 +162,8 @@ def main(arguments: list[str]) -> int:
     report.text(
         "The domains have the shapes of the dissertation's, which has no dimensions, and other meshes; amount 1 is its "
         "largest motion according to the figures. Coefficients follow from (4.19) and (4.21). TMP shape is (4.22) "
-        "against the initial element; worst and mean are over all elements, inverted ones too. There are two variants "
-        "of the second step. One is (4.24) itself: local Polak-Ribiere conjugate gradients, c = "
+        "against the initial element; worst and mean are over all elements, including inverted ones. There are two "
+        "variants of the second step. One is (4.24) itself: local Polak-Ribiere conjugate gradients, c = "
         f"{1e6:g}, at most {ITERATIONS} iterations. It depends on beta and on the unit of length, neither of which the "
         f"dissertation gives; here: {CHOSEN}, of some sixteen settings that were tried on the meshes of seed 1 one of "
         "the two that untangle all planar examples from either start at amount 1: findings on untangling are "

@@ -113,7 +113,7 @@ def _compared(report: Report, of: dict[str, list[Deformed]], known: Sequence[int
     report.finding("6", "The hybrid algorithm outperforms existing methods in mesh quality",
                    Open(f"(4.24) failed in {failed} examples") if failed else
                    all(count == len(known) for count in better.values()),
-                   f"a better worst TMP shape in so many of {len(known)} examples: " + ", ".join(
+                   f"a better worst TMP shape, number of {len(known)} examples: " + ", ".join(
                        f"than {METHODS[n][0]} {count}" for n, count in better.items()),
                    criterion="a smaller largest TMP shape than each other method in each example")
 
@@ -133,7 +133,7 @@ def main(arguments: list[str]) -> int:
     report.text(
         "The examples of the study `deformation` at the dissertation's largest motion and 1.5 times that, all methods "
         "with their defaults. At 1.5 times its motion the gate touches the opposite wall: no mesh is valid there, and "
-        "methods that check this stop before. TMP shape is (4.22), of all elements, inverted ones too."
+        "methods that check this stop before. TMP shape is (4.22), of all elements, including inverted ones."
     )
     for seed in report.seeds:
         run(report, given.small, given.repeats, seed)

@@ -62,7 +62,7 @@ def main(arguments: Sequence[str]) -> int:
 
 
 def improvement(report: Report, given: Any) -> None:
-    """The drawings of constructions, and what two of them show."""
+    """The drawings of constructions, and the content of two of them."""
     rough, smooth, tangled = _constructions.draw(report, given.threads)
     quality = [float(np.mean(tautline.quality(mesh, ["imr"]).values["imr"])) for mesh in (rough, smooth)]
     improvement_findings(report, quality[0], quality[1], int(np.sum(sizes_of(tangled) <= 0)))
@@ -255,7 +255,7 @@ def row_entries(n: int, delta: float, threads: int) -> float:
 
 
 def local_row(mesh: vtkDataSet) -> float:
-    """Entries of a row of the local model, the median: the neighbours of a point by an edge, and the point."""
+    """Entries of a row of the local model, the median: the neighbors of a point by an edge, and the point."""
     cells = cells_of(mesh)
     edges = np.unique(np.sort(np.concatenate([cells[:, [0, 1]], cells[:, [1, 2]], cells[:, [2, 0]]]), axis=1), axis=0)
     return 1 + float(np.median(np.bincount(edges.ravel(), minlength=mesh.GetNumberOfPoints())))
@@ -276,7 +276,7 @@ def legs(mesh: vtkDataSet) -> float:
 
 def nonlocal_findings(report: Report, entries: dict[float, float], local: float, counts: dict[tuple[int, int], int],
                       ratio: float, cut: dict[str, tuple[float, float]]) -> None:
-    """entries: nonzero entries of a row by the horizon; local: those of the local model."""
+    """entries: nonzero entries of a row by the horizon; local: nonzero entries of the local model."""
     made = "a property of the construction of the mesh"
     told = ", ".join(f"{v:.1f} with delta = {d}" for d, v in entries.items())
     report.finding("Figure 4.2", "More nonzero entries appear than in the local model",
@@ -366,7 +366,7 @@ def silhouette_findings(report: Report, vertices: int, cells: int, farthest: flo
     report.finding("Figure 5.2", "d_max is the distance of the farthest boundary vertex from the center of mass",
                    abs(farthest / stated - 1) <= OUTLINE_TOLERANCE,
                    f"vertices {farthest:.1f}, outline {stated:.1f} pixels",
-                   criterion=f"of the vertices within {OUTLINE_TOLERANCE:.0%} of that of the whole outline")
+                   criterion=f"the vertices' distance is within {OUTLINE_TOLERANCE:.0%} of the whole outline's")
     report.finding("Figure 5.4", "9 categories of 11 images each", unless(
         "" if real else "the silhouettes are synthetic; give the dissertation's with --data",
         len(members) == CATEGORIES and set(members.values()) == {MEMBERS}),

@@ -13,7 +13,7 @@ SMALL_CELLS = (400, 1500)  # triangles, tetrahedra
 CASES = tuple((example.domain, amount) for amount in AMOUNTS for example in EXAMPLES)
 SHOWN = "bar"  # in the picture strip
 SOURCE = "4.9.1, 6"  # where the dissertation asks for other coefficients
-#: Names of what is compared, their titles, the method of METHODS and the coefficients.
+#: Names of the compared variants, their titles, the method of METHODS and the coefficients.
 CHOICES: dict[str, tuple[str, str, dict[str, str]]] = {
     "femwarp": ("FEMWARP", "femwarp", {}),
     "constant": ("constant, (4.19)", "anisotropic", {}),
@@ -86,8 +86,8 @@ def run(report: Report, small: bool, repeats: int, seed: int) -> None:
     local, constant = (sum(w.seconds for w in of[name]) for name in ("local", "constant"))
     fewer = [sum(w.inverted for w in of[name][: len(EXAMPLES)]) for name in ("femwarp", "constant", "local")]
     report.text(
-        f"What was asked (4.9.1 and 6): whether coefficients that vary in space invert fewer elements. What is "
-        f"found: at the dissertation's motion FEMWARP inverts {fewer[0]} elements of the six examples, constant "
+        f"Question (4.9.1 and 6): do coefficients that vary in space invert fewer elements? Result: at the "
+        f"dissertation's motion FEMWARP inverts {fewer[0]} elements of the six examples, constant "
         f"coefficients {fewer[1]}, local gradients {fewer[2]}; they take {local / constant:.2g} times the CPU time of "
         "constant ones, for the first solve. The table has the larger motion."
     )

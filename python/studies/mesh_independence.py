@@ -34,7 +34,7 @@ VERTICES = {
     "wrench": {10_000: 10_142, 50_000: 50_161, 100_000: 100_267, 200_000: 199_981, 500_000: 499_340},
     "hinge": {10_000: 9_989, 50_000: 49_986, 100_000: 99_949, 200_000: 200_894, 500_000: 498_978},
 }
-#: What is varied: the sentence, and what "the same" refers to.
+#: The varied choices: the sentence, and the reference of "the same".
 CLAIMS = {
     "size": ("The solution is independent of the mesh size", "the finest mesh"),
     "metric": ("The solution is not affected by the metric", "the last metric"),
@@ -116,13 +116,13 @@ def findings(report: Report, domain: str, found: dict[str, dict[str, dict]], sha
         last = {pde: list(values[what])[-1] for pde, values in found.items()}
         report.finding(where, sentence, all_of(same(values[what], last[pde]) for pde, values in found.items()),
                        ", ".join(f"{pde} {difference(v[what], last[pde]):.2g}" for pde, v in found.items()),
-                       criterion=f"the mean of the solution differs by at most {SAME_SOLUTION:.0%} from that of "
+                       criterion=f"the mean of the solution differs by at most {SAME_SOLUTION:.0%} from the mean of "
                        f"{reference}; systems solved to {RESIDUAL:g}")
     report.finding(where, "PETSc's default tolerance is enough for a solution that does not depend on the solver",
                    all_of(same(values["default"], "exact") for values in found.values()),
                    ", ".join(f"{pde} {difference(v['default'], 'exact'):.2g}" for pde, v in found.items()),
-                   criterion=f"with {DEFAULT:g} the mean differs by at most {SAME_SOLUTION:.0%} from that of systems "
-                   f"solved to {RESIDUAL:g}", own=True)
+                   criterion=f"with {DEFAULT:g} the mean differs by at most {SAME_SOLUTION:.0%} from the mean of "
+                   f"systems solved to {RESIDUAL:g}", own=True)
     rows = np.array(list(shares.values()))
     largest = float(np.ptp(rows, axis=0).max())
     report.finding(where, "The angle distribution is independent of the mesh size",

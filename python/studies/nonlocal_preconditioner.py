@@ -32,11 +32,11 @@ _SMALL_CELLS = (250, 500)
 #: Horizons on the user's mesh, in mean element sizes.
 _HORIZONS = (2, 3, 5)
 #: By how much iterations may vary over a range in which they count as bounded: a factor of 2 in delta, 4 or 8 in h.
-#: (Those of Jacobi should grow like 1/delta and, with a horizon of fixed elements, like 1/h.)
+#: (Jacobi's iterations should grow like 1/delta and, with a horizon of fixed elements, like 1/h.)
 BOUNDED = 0.5
 #: The condition number of the preconditioned matrix that no case may exceed.
 CONDITION = 10.0
-#: So many more iterations count as bounded, too, however few the easiest case takes.
+#: This many more iterations also count as bounded, however few the easiest case takes.
 MORE = 8
 #: Order in 1/h of Jacobi's iterations where the horizon is a fixed number of elements.
 _ORDER, _ORDER_TOLERANCE = 1.0, 0.25
@@ -87,7 +87,7 @@ def main(arguments: Sequence[str]) -> int:
     given = made.parse_args(arguments)
     report = Report("nonlocal_preconditioner", "Preconditioners for nonlocal matrices (section 4.6)", given)
     report.text(
-        "What was asked: a preconditioner that decreases the condition number of the nonlocal matrices. Conjugate "
+        "Goal: a preconditioner that decreases the condition number of the nonlocal matrices. Conjugate "
         "gradients with three: the diagonal (Jacobi); one cycle of algebraic multigrid for the local limit (delta "
         "to 0), linear elements on the same triangles, added to the inverse of a mass matrix (p below 2) or of the "
         "diagonal; or a coarse grid with cells of about half the horizon, and the same inverse on what it leaves "
@@ -169,7 +169,7 @@ def ranges(rows: dict[tuple, Row], name: str, varied: int) -> list[tuple[int, in
 def bounded(report: Report, source: str, where: str, rows: dict[tuple, Row], varied: int) -> None:
     """States for each of the new preconditioners whether its iterations are bounded along one part of the keys."""
     found = {name: ranges(rows, name, varied) for name in PRECONDITIONERS}
-    # Of each, the range with the largest growth.
+    # For each, the range with the largest growth.
     largest = {name: max(pairs, key=lambda pair: pair[1] / pair[0]) for name, pairs in found.items() if pairs}
     for name in NEW:
         report.finding(source, f"{PRECONDITIONERS[name]}: iterations are bounded in {where}",

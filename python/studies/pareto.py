@@ -22,8 +22,8 @@ CELLS, SMALL_CELLS = 20_000, 1_000
 WEIGHTS, SMALL_WEIGHTS = tuple(10.0 ** np.linspace(-3, 3, 25)), tuple(10.0 ** np.linspace(-2, 2, 5))
 #: Iterations of the optimizer of the front and of the converged results, and its relative change.
 LIMIT, SMALL_LIMIT, CHANGE = 3_000, 300, 1e-10
-#: A point dominates another one if both of its objectives are smaller by this part of those of the start: what two
-#: optimizations of one objective to convergence differ by.
+#: A point dominates another one if both of its objectives are smaller by this part of their start values: the
+#: difference between two converged optimizations of one objective.
 TOLERANCE = 1e-4
 UNIT = 10.0  # the edges of the mesh in another unit of length
 SAME = 1e-6  # over the extent of the mesh: distances of vertices that are at the same place
@@ -74,13 +74,11 @@ def main(arguments: list[str]) -> int:
     sampled = front(mesh, sorted([*weights, *(implied_weight(n, r.mesh) for n, r in exact.items())]), limit)
     report.text(
         f"disk2d: {mesh.GetNumberOfCells():,} triangles, the mesh of the study shape_size. Objectives: sums of squares "
-        "of IMR and size, over those of the start. The front is sampled by minima of weighted sums, each from the "
+        "of IMR and size, relative to the start. The front is sampled by minima of weighted sums, each from the "
         f"start by {OPTIMIZER.upper()} to a relative change of {CHANGE:g}; among the weights are those that the "
-        "converged results imply, where a scalarization and the weighted sum have the same gradient; converged "
-        "results the same way, those of "
-        f"section 3.4 by {ITERATIONS} sweeps of local conjugate gradients. A weighted sum finds convex parts of a "
-        "front "
-        "only, and a sample is not a proof: it can show that a result is not optimal."
+        "converged results imply, where a scalarization and the weighted sum have the same gradient; converged results "
+        f"the same way, results of section 3.4 by {ITERATIONS} sweeps of local conjugate gradients. A weighted sum "
+        "finds convex parts of a front only, and a sample is not a proof: it can show that a result is not optimal."
     )
     relative = {r.method.name: tuple(a / b for a, b in zip(objectives(r.mesh), start))
                 for r in sampled if not r.failure}
@@ -92,12 +90,12 @@ def main(arguments: list[str]) -> int:
     rows = [[name, "front", *point, float("nan")] for name, point in relative.items()]
     rows += [[name, kind, *point, dominated(point, list(relative.values()))]
              for kind, found in ends.items() for name, point in found.items()]
-    report.table("front", "Objectives over those of the start, and by how much a point of the front is better in both",
+    report.table("front", "Objectives relative to the start, and by how much a point of the front is better in both",
                  ["method", "kind", "IMR", "size", "dominated by"], rows)
     ordered = sorted(relative.values())
     curves = {"front": tuple(zip(*ordered))}
     curves |= {f"{name}, {kind}": tuple(zip(point)) for kind, found in ends.items() for name, point in found.items()}
-    report.lines("pareto", [("Objectives over those of the start", "sum of IMR^2", "sum of size^2", curves)], columns=1)
+    report.lines("pareto", [("Objectives relative to the start", "sum of IMR^2", "sum of size^2", curves)], columns=1)
     findings(report, {kind: {n: dominated(point, list(relative.values())) for n, point in found.items()}
                       for kind, found in ends.items()}, unit_shift(mesh))
     return report.finish()
@@ -117,7 +115,7 @@ def unit_shift(mesh: vtkDataSet) -> dict[str, float]:
 def findings(report: Report, better: dict[str, dict[str, float]], shift: dict[str, float]) -> None:
     """The findings of sections 3.3.1 and 3.4.
 
-    better: of converged results and those after some sweeps, by how much a point of the front is better in both
+    better: for converged results and results after some sweeps, by how much a point of the front is better in both
     objectives; shift: the distance between results in two units of length.
     """
     for kind, found in better.items():

@@ -90,7 +90,7 @@ def main(arguments: Sequence[str]) -> int:
     report.texts("Slope of ln cond per unit of p", growth, ["1/h", "delta", "discretization", *parts], "kernel_slopes")
     report.chart("peridynamics_kernel", panels)
     local = ", ".join(f"{1 / math.tan(math.pi / (2 * n)) ** 2:.1f} at h = 1/{n}" for n in sizes)
-    report.text("As p goes to 4 the operator becomes local and cond that of the Laplacian, cot^2(pi h / 2): "
+    report.text("As p goes to 4 the operator becomes local, and cond tends to the Laplacian's, cot^2(pi h / 2): "
                 f"{local}; so the growth ends.")  # fmt: skip
     findings(report, exponents, exact, rules)
     return report.finish()

@@ -18,7 +18,7 @@ from ._verdicts import Open, Verdict, all_of, any_of, less
 _DELTAS = (0.2, 0.3, 0.4)
 _SIZES = (10, 20, 40)
 _RATIOS = (1, 4)
-#: Within which a number is the printed one, relative; the printed ones have three or four digits.
+#: Relative tolerance for agreement with a printed number; the printed ones have three or four digits.
 _SAME = 0.02
 #: Tolerance of the integrals with which the error of (b) is estimated, a hundredth of the default.
 _FINE = 1e-7
@@ -165,14 +165,14 @@ def _listed(found: dict, stated: dict, far: dict, what: str) -> str:
 
 
 def number_findings(report: Report, table: str, cells: Cells) -> None:
-    """The printed numbers of a table by the rules that reproduce most of them, and by those of the text."""
+    """The printed numbers of a table by the rules that reproduce most of them, and by the rules of the text."""
     printed = TABLES[table]
     ours = _numbers(cells, "a")
     far = _far(ours, printed, _SAME)
     errors = [abs(printed[key] / cells[key].b - 1) for key in far]
     good = [abs(cells[key].a / cells[key].b - 1) for key in cells if key not in far]
     reason = "" if not far or not good else (
-        f"The numbers that differ are {min(errors):.1%} to {max(errors):.1%} away from the exact integrals, too; the "
+        f"The numbers that differ are also {min(errors):.1%} to {max(errors):.1%} away from the exact integrals; the "
         f"others of (a) are within {max(good):.1%} of them")
     report.finding(f"Table {table}", "The printed condition numbers", all_of(key not in far for key in ours),
                    _listed(ours, printed, far, "for printed"), reason=reason,

@@ -31,7 +31,7 @@ _SECONDS = 3600  # of a run
 def measured(work: str, cells: int, ranks: int, repeats: int) -> tuple[float, np.ndarray]:
     """The least wall-clock seconds of several runs, and the result by the numbers of points or cells."""
     programs = [shutil.which(name) for name in ("mpirun", "pvbatch")]
-    # As root, too, and where processes may not read each other's memory; ranks that wait leave the cores to others.
+    # Also as root, and where processes may not read each other's memory; ranks that wait leave the cores to others.
     environment = {**os.environ, "OMP_NUM_THREADS": "1", "OMPI_MCA_btl_vader_single_copy_mechanism": "none",
                    "OMPI_MCA_mpi_yield_when_idle": "1"}
     root = ["--allow-run-as-root"] if os.geteuid() == 0 else []
@@ -65,10 +65,10 @@ def main(arguments: Sequence[str]) -> int:
         raise Error(f"this study needs {' and '.join(missing)}")
     cells = given.cells or (_SMALL_CELLS if given.small else _CELLS)
     report = Report("rank_scaling", "Times by the number of MPI ranks (chapter 6)", given)
-    report.text("What was asked: the scaling of mesh optimization over processes. A square of triangles whose inner "
+    report.text("Subject: the scaling of mesh optimization over processes. A square of triangles whose inner "
                 "points are moved at random is cut in strips, one for each rank, which is worse than what the filters "
                 f"can divide it into. Wall-clock seconds, the least of {given.repeats} runs, one thread for each rank; "
-                f"the number of cores is {cores}. Speed-ups are of this machine; what is judged is that the results do "
+                f"the number of cores is {cores}. Speed-ups are of this machine; the criterion is that the results do "
                 "not depend on the number of ranks.")
     found = {work: {n: measured(work, cells, n, given.repeats) for n in counts} for work in WORKS}
     tiny = np.finfo(float).tiny

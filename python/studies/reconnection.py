@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What slivers cost a solver, what Improve Mesh gives back, and how far it comes on the domains."""
+"""The cost of slivers for a solver, the gain by Improve Mesh, and its results on the domains."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ EXPECTED_ERROR = 1e-3  # relative, of the eigenvalues
 CONDITION_ERROR = 2 * EXPECTED_ERROR  # of their ratio
 COLUMNS = ("elements", "smallest angle", "worst imr", "condition", "preconditioned", "iterations")
 ANGLE, CONDITION, PRECONDITIONED, ITERATIONS = 1, 3, 4, 5
-#: Label and what is done with the mesh with slivers.
+#: Label and the operation on the mesh with slivers.
 STEPS: dict[str, Callable[[vtkDataSet, int], vtkDataSet]] = {
     "with slivers": lambda mesh, threads: mesh,
     "best shape (points move)": lambda mesh, threads: tautline.optimize(mesh, threads=threads).mesh,
     "remove slivers": lambda mesh, threads: tautline.improve(mesh, "remove slivers", threads=threads).mesh,
     "aggressive": lambda mesh, threads: tautline.improve(mesh, "aggressive", threads=threads).mesh,
 }
-#: The domains of the condition numbers; those of the comparison with Delaunay refinement.
+#: The domains of the condition numbers, and of the comparison with Delaunay refinement.
 DOMAINS = ("disk3d", "wrench")
 PLANAR = ("plate", "wrench", "hinge")
 #: Domains of tetrahedra, the targets in degrees with the boundary fixed and sliding, and the angle that a sliding one
@@ -59,12 +59,12 @@ def figures(mesh: vtkDataSet, threads: int) -> list[float]:
 
 @remembered
 def stepped(mesh: vtkDataSet, label: str, threads: int) -> vtkDataSet:
-    """What a step makes of the mesh with slivers."""
+    """The numbers of the mesh with slivers after a step."""
     return STEPS[label](mesh, threads)
 
 
 def domain_findings(report: Report, domain: str, rows: Rows) -> None:
-    """The findings on a domain; rows are those of `figures`."""
+    """The findings on a domain; rows: see `figures`."""
 
     def text(column: int) -> str:
         return ", ".join(f"{name} {row[column]:.5g}" for name, row in rows.items())
@@ -92,7 +92,8 @@ def refinement_findings(report: Report, rows: Rows) -> None:
     holds = all_of(ours >= theirs and points <= count for theirs, count, ours, points in rows.values())
     shown = ", ".join(f"{name} {ours:.4g} with {points:.0f} points (refinement {theirs:.4g} with {count:.0f})"
                       for name, (theirs, count, ours, points) in rows.items())
-    report.finding("plane", "The smallest angle is at least that of Delaunay refinement with as many points", holds,
+    claim = "The smallest angle is at least as large as after Delaunay refinement with as many points"
+    report.finding("plane", claim, holds,
                    shown, own=True, criterion="at least its angle, with at most its number of points, on every domain")
 
 
@@ -168,7 +169,7 @@ def reach(cells: int, threads: int) -> Rows:
 
 
 def reach_findings(report: Report, rows: Rows) -> None:
-    """Whether all are improved, and the domains reach the angle where the boundary slides; rows: those of `reach`."""
+    """Whether all are improved, and the domains reach the angle where the boundary slides; rows: see `reach`."""
     shown = ", ".join(f"{name} {row[4]:.4g} degrees, {row[5]:.4g}" for name, row in rows.items())
     sliding = [row[4] for name, row in rows.items() if name.split(", ")[0] in SOLIDS and name.endswith("sliding")]
     report.finding("solids", "Smallest angle and worst inverse mean ratio improve on all meshes",
@@ -180,7 +181,7 @@ def reach_findings(report: Report, rows: Rows) -> None:
 
 def main(arguments: list[str]) -> int:
     given = parser("reconnection", __doc__, CELLS).parse_args(arguments)
-    report = Report("reconnection", "What slivers cost a solver", given)
+    report = Report("reconnection", "The cost of slivers for a solver", given)
     cells = given.cells or (SMALL_CELLS if given.small else CELLS)
     report.text(
         f"Meshes of the domains, all inner points moved at random by up to {PERTURBED:g} of their distance to "

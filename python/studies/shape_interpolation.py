@@ -18,7 +18,7 @@ TIMES = {
     "equal-sum": (70.7, 301.1, 599.2, 1217.6),
 }
 WORST_GAIN = 0.954  # of the exponential sum over SS alone, by the worst IMR
-FOUR_TIMES = 4.0  # the time of the equal sum over that of IMR alone, as the text has it
+FOUR_TIMES = 4.0  # the time of the equal sum over the time of IMR alone, as in the text
 TURN = 10  # the iteration after which the worst element by SS deteriorates with IMR alone
 GOALS = Goals(
     name="shape_interpolation",
@@ -69,7 +69,7 @@ def quality_findings(report: Report, found: Outcome) -> None:
             f"its average IMR is the largest on each domain {END}")
     for quantity, what, source in (("ss_mean", "average", "Figure 3.6 (b)"), ("ss_worst", "worst element", "3.4.2")):
         holds, where = everywhere(found.others, lambda r, q=quantity: reduces(r["imr"], q))
-        finding(source, f"IMR alone improves the {what} by SS, too", holds, f"{where}; {compare(runs, quantity)}",
+        finding(source, f"IMR alone also improves the {what} by SS", holds, f"{where}; {compare(runs, quantity)}",
                 f"{what} by 1 / SS below the start on each domain {END}")
     improved = 1 - runs["exponential-sum"].last("imr_worst") / ss.last("imr_worst")
     finding("3.4.2", "The exponential sum has a far better worst element by IMR than SS alone",

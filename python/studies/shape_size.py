@@ -19,7 +19,7 @@ TIMES = {
     "equal-sum": (33.1, 117.5, 233.2, 439.5),
 }
 WORST_GAIN = 0.966  # of the exponential sum over the size alone, by the worst IMR
-TWICE = 2.0  # the time of the objective product over that of the size alone, as the text has it
+TWICE = 2.0  # the time of the objective product over the time of the size alone, as in the text
 EARLY = 3  # "the first few iterations"
 DETERIORATION = 2.0  # a worst element deteriorates significantly if its metric becomes this multiple of its best value
 #: How averages and worst elements are compared.

@@ -20,7 +20,7 @@ from ._tangled import (
 from ._verdicts import Times, Verdict, all_of, below, less
 from ._warped import of_points
 
-# Inverted elements by iteration; the second table has Escobar's method too.
+# Inverted elements by iteration; the second table also has Escobar's method.
 TABLE_3_4 = {
     "si": (543, 1019, 1030, 1030, 1030),
     "untangle": (543, 10, 1, 0, 0),

@@ -49,12 +49,12 @@ _SETTING = dict(setting="custom", spacing=25.0)
 _BEST = 10  # matches in the rows of Figures 5.5 and 5.6
 _QUERIES, _PAIRS = 3, 6  # of Figures 5.5 and 5.6, and of Figure 5.7
 _TRIED = 30  # silhouettes among which Figure 5.3 is looked for
-_NOT_KIMIA = "the silhouettes are not those of the dissertation's set; give them with --data"
+_NOT_KIMIA = "the silhouettes are not the dissertation's set; give them with --data"
 
 
 @dataclass(frozen=True)
 class Retrieved:
-    """What a study needs of tautline.retrieval()."""
+    """The results of tautline.retrieval() that a study needs."""
 
     rate: float
     ranking: np.ndarray
@@ -103,7 +103,7 @@ def main(argv: list[str]) -> int:
     made = parser("shapes", __doc__, threads=0, seeds=True)
     made.add_argument("--data", metavar="FOLDER", help="silhouettes with labels.csv and images (default: synthetic)")
     made.add_argument("--unseen", action="store_true", help="the setting with the highest rate alone, for a set whose "
-                      "classes are not those of Kimia's, such as MPEG-7's")
+                      "classes are not Kimia's, such as MPEG-7's")
     made.add_argument("--per-class", type=int, default=0, metavar="N",
                       help="with --unseen: the first N of each class (default: all)")
     made.add_argument("--seed", type=int, default=1, help="of the synthetic set, or of the borders of the images of a "
@@ -151,7 +151,7 @@ def table(report: Report, images: list[np.ndarray], labels: list[str], best: int
     if swept:
         theta_findings(report, rates["dissertation"][_WEIGHT], swept["theta = 0.5 d_max"])
     high_findings(report, {key: r.rate for key, r in high.items()}, by_half(high["highest"]), kimia)
-    report.text("What was asked: a rate that carries over to other sets, sizes and directions. What is found: lengths "
+    report.text("Question: does a rate carry over to other sets, sizes and directions? Result: lengths "
                 "relative to the outline make copies of a shape that are turned, scaled or mirrored the same to 2 % (a "
                 "test); the setting without diffusion compares two shapes at a time, with diffusion the whole set.")
     _figures(report, images, found["felzenszwalb", _WEIGHT], found["dissertation", _WEIGHT], options)
@@ -168,7 +168,7 @@ def unknown_weight(rates: dict[float, float], printed: float) -> Verdict:
 
 
 def _of_weights(verdicts: dict[float, Verdict]) -> Verdict:
-    """What holds with each weight holds, what does with none does not; else the weight decides."""
+    """A statement holds if it holds with each weight, and does not if with none; otherwise the weight decides."""
     every, some = all_of(verdicts.values()), any_of(verdicts.values())
     if isinstance(every, bool) and isinstance(some, bool) and every != some:
         return Mixed("the dissertation does not give b, and it depends on b")
@@ -239,7 +239,7 @@ def by_half(result: Retrieved) -> tuple[float, float]:
 
 
 def _figures(report: Report, images: list[np.ndarray], plain: Retrieved, full: Retrieved, options: Any) -> None:
-    """The figures, and what the text states about them. plain: Felzenszwalb's energy; full: the dissertation's."""
+    """The figures, and the text's statements about them. plain: Felzenszwalb's energy; full: the dissertation's."""
     labels = full.labels
     members = [[i for i, label in enumerate(labels) if label == name] for name in dict.fromkeys(labels)]
     # Good queries have the most correct matches by both methods; poor ones the fewest by both, one per class.
@@ -301,7 +301,7 @@ def _rule_picture(report: Report, images: list[np.ndarray], options: Any) -> Non
 
 def figure_findings(report: Report, good: Sequence[tuple[int, int]], poor: Sequence[tuple[int, int]], equal: float,
                     distances: Sequence[tuple[float, float]]) -> None:
-    """What the text states about the figures; pairs are of Felzenszwalb's energy and the dissertation's.
+    """The text's statements about the figures; pairs are of Felzenszwalb's energy and the dissertation's.
 
     good, poor: right matches of the queries of Figures 5.5 and 5.6. equal: part of the queries whose ten best are the
     same in the same order. distances: D over d_max of Figure 5.7.

@@ -61,7 +61,7 @@ Swept = dict[float, tuple[int, dict[int, Times]]]
 
 @remembered
 def poor_at_boundary(mesh: vtkDataSet) -> tuple[int, int]:
-    """Number of triangles with an angle below 20 or above 100 degrees, and of those of them with a boundary vertex."""
+    """Number of triangles with an angle below 20 or above 100 degrees, and how many of them have a boundary vertex."""
     cells = cells_of(mesh)
     p = points_of(mesh)[cells]
     poor = np.zeros(len(p), bool)
@@ -83,7 +83,7 @@ def main(arguments: list[str]) -> int:
     report = Report("smoothing_times", "Smoothing times and angles (section 2.4, Tables 2.6 and 2.7)", given)
     report.text(
         f"Each metric is smoothed to {100 * REDUCTION:g} % of the possible reduction of its objective, whose best "
-        "value is that of a converged run (L-BFGS after Local Newton sweeps, relative change 1e-5). Sum of squares "
+        "value comes from a converged run (L-BFGS after Local Newton sweeps, relative change 1e-5). Sum of squares "
         "of IMR and RR, sum of squared reciprocals of SI and SS; boundary fixed. Local conjugate gradients are "
         "Polak-Ribiere's, one step per vertex and sweep (the dissertation: Fletcher-Reeves, the same with one step). "
         f"Times are CPU seconds of {given.threads or 'all'} thread(s), set-up included, the fastest of "
@@ -95,7 +95,7 @@ def main(arguments: list[str]) -> int:
     report.text(
         "Half of the interior vertices are perturbed by up to 0.5 of the distance to inversion. The dissertation's "
         "times are of an Intel Nehalem at 2.66 GHz, 500,000 vertices.\n"
-        "Of a triangle, SI = 1 / (4 sqrt(3) IMR): these two objectives differ by a factor only, and so their results "
+        "For a triangle, SI = 1 / (4 sqrt(3) IMR): these two objectives differ by a factor only, and so their results "
         "are the same; that the dissertation's differ must come from the point where the smoothing stopped."
     )
     for seed in report.seeds:

@@ -68,8 +68,8 @@ def main(arguments: list[str]) -> int:
     sizes = SMALL_SIZES if given.small else SIZES
     report = Report("solution_error", "Errors of the solution (sections 2.7.1 and 2.8)", given)
     report.text(
-        "What was asked: which combination of metric, preconditioner and solver gives the smallest error of the "
-        "solution. Three solutions are known: a smooth one and a boundary layer on the unit square, and a singularity "
+        "Question: which combination of metric, preconditioner and solver gives the smallest error of the solution? "
+        "Three solutions are known: a smooth one and a boundary layer on the unit square, and a singularity "
         "r^(2/3) on an L-shaped domain. Half of the interior vertices are perturbed, then the mesh is smoothed by each "
         "metric to 95 % of the possible reduction. Errors in L2 and in the H1 seminorm by Solve PDE; CPU "
         f"seconds of {given.repeats} run(s)."

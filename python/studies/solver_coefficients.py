@@ -87,7 +87,7 @@ def runs(mesh: vtkDataSet, given: argparse.Namespace) -> dict[str, Varied]:
 
 
 def pairs(varied: Varied) -> dict[tuple[int, int], set[bool | None]]:
-    """Of each pair of combinations that converged with all values, whether the first is faster; None: not decided."""
+    """For each pair of combinations that converged with all values, whether the first is faster; None: not decided."""
     times = [times_of(row) for row in varied.values()]
     numbers = sorted(set.intersection(*(set(t) for t in times)))
     return {(a, b): {None if isinstance(v := faster(t[a], t[b]), Open) else bool(v) for t in times}

@@ -141,5 +141,5 @@ def rigid_findings(report: Report, where: str, rows: Rows) -> None:
 
 
 def waiting(row: dict[int, Solve]) -> str:
-    """What did not finish within the time limit; "": everything did."""
+    """The combinations that did not finish within the time limit; "": all did."""
     return trouble(row, [n for n, s in row.items() if s.unfinished])

@@ -21,7 +21,7 @@ FIGURES = {"poisson": ("2.5", "2.6"), "elliptic": ("2.8", "2.9"), "elasticity": 
 SECTIONS = {"poisson": "2.7.3.2", "elliptic": "2.7.3.3", "elasticity": "2.7.3.4"}
 TABLES = {"poisson": "Table 2.8", "elliptic": "Table 2.10", "elasticity": "Table 2.11"}
 ONE_LEVEL_ORDER, MULTIGRID_ORDER = 0.5, 0.1
-#: What "around" and "approximately" allow of an order.
+#: Tolerances of an order for "around" and "approximately".
 NEAR = 0.15
 JACOBI_GMRES = 2
 CG = (1, 5, 9)  # with a preconditioner of one level
@@ -134,7 +134,7 @@ def shown(orders: dict[str, Orders], numbers: tuple[int, ...]) -> str:
 
 
 def findings(report: Report, pde: str, orders: dict[str, Orders]) -> None:
-    """What is stated of s of the iterations, by domain."""
+    """The statements on s of the iterations, by domain."""
     where = f"Figure {FIGURES[pde][0]}"
     around = f"within {NEAR:g}"
     if pde == "elasticity":
@@ -144,7 +144,7 @@ def findings(report: Report, pde: str, orders: dict[str, Orders]) -> None:
                 report.finding(f"{where}, wrench", "s is less with AMG than with the other preconditioners",
                                all_of(Open(f"{LABELS[n]} failed on a mesh") if n not in row else row[n] < row[m]
                                       for n in AMG for m in others), shown({domain: row}, (*AMG, *others)),
-                               criterion="the s of each combination with AMG is less than that of every other one")
+                               criterion="the s of each combination with AMG is less than with every other one")
             else:
                 report.finding(f"{where}, hinge", "s is close to 0.5 with all combinations",
                                near({domain: row}, tuple(n for n in (*AMG, *others) if n != JACOBI_GMRES),

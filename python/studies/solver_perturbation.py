@@ -27,7 +27,7 @@ NOISE = ("by more than the ranges of PI that the faster half of the runs allows,
 
 #: Solves by fraction and number of the combination.
 Rows = dict[float, dict[int, Solve]]
-#: PI, the least and the largest one that the times allow, and the least and the largest one by the iterations.
+#: PI, the smallest and the largest one that the times allow, and the smallest and the largest one by the iterations.
 Increase = tuple[float, ...]
 Grown = dict[int, Increase]
 
@@ -126,7 +126,7 @@ def failures(rows: Rows) -> dict[int, int]:
 
 
 def unfinished(rows: Rows) -> str:
-    """What did not finish within the time limit; "": everything did."""
+    """The combinations that did not finish within the time limit; "": all did."""
     return next((f"{LABELS[n]} did not finish" for row in rows.values() for n, s in row.items() if s.unfinished), "")
 
 
@@ -148,7 +148,7 @@ def findings(report: Report, pde: str, domain: str, rows: Rows, grown: Grown) ->
         report.finding(where, "The Jacobi preconditioner is the most sensitive to perturbation",
                        any_of(all_of(compared(grown, n, m) for m in rows[0.0] if m not in JACOBI)
                               for n in JACOBI if n in rows[0.0]), figures,
-                       criterion=f"the PI of a combination with Jacobi is larger than that of all others, {NOISE}")
+                       criterion=f"the PI of a combination with Jacobi is larger than the PI of all others, {NOISE}")
     if pde == "elasticity":
         mean = means(grown)
         report.finding(where, "AMG is less affected by perturbation than the other preconditioners",
@@ -183,12 +183,12 @@ def ranking_findings(report: Report, pde: str, domain: str, grown: Grown) -> Non
                    all_of(compared(grown, n, one) for one in robust for n in GROUPED if n not in robust),
                    ", ".join(f"{LABELS[n]} {grown[n][0]:.2f}" for n in robust if n in grown)
                    + ("" if smallest is None else f"; smallest PI: {LABELS[smallest]} {grown[smallest][0]:.2f}"),
-                   criterion=f"their PI is smaller than that of all other combinations, {NOISE}")
+                   criterion=f"their PI is smaller than the PI of all other combinations, {NOISE}")
     if pde == "elasticity":
         report.finding(where, "The most sensitive to perturbation: " + ", ".join(LABELS[n] for n in SENSITIVE),
                        all_of(compared(grown, one, n) for one in SENSITIVE for n in GROUPED if n not in SENSITIVE),
                        "largest PI: " + ", ".join(f"{LABELS[n]} {grown[n][0]:.2f}" for n in largest),
-                       criterion=f"their PI is larger than that of all other combinations, {NOISE}")
+                       criterion=f"their PI is larger than the PI of all other combinations, {NOISE}")
 
 
 def domain_findings(report: Report, pde: str, found: dict[str, tuple[Rows, Grown]]) -> None:

@@ -18,7 +18,7 @@ from ._horizon import Report, exponent, increasing
 from ._memory import remembered
 from ._verdicts import all_of, less
 
-#: Poisson's ratios in plane strain; that of the bond-based model is BONDS.
+#: Poisson's ratios in plane strain; the bond-based model has BONDS.
 BONDS = 0.25
 RATIOS = (-0.5, 0.0, BONDS, 0.4, 0.45, 0.49)
 #: The square: 1/h, the horizon, the exponent of the kernel; the first of each is the one the others vary around.
@@ -110,7 +110,7 @@ def kirsch(points: np.ndarray, ratio: float) -> np.ndarray:
 
 @remembered
 def plate_error(mesh: vtkDataSet, delta: float, model: str, threads: int) -> float:
-    """Root mean square error of the displacement at the unknown points, over that of the displacement."""
+    """Root mean square error of the displacement at the unknown points, over its root mean square."""
     points = points_of(mesh)
     exact = kirsch(points, _MATERIAL)
     result = tautline.peridynamics(mesh, delta, _P, model=model, poisson_ratio=_MATERIAL, tolerance=1e-3, source=0.0,
@@ -136,7 +136,7 @@ def main(arguments: Sequence[str]) -> int:
     given = _horizon.parse("state_based", __doc__ or "", arguments)
     report = Report("state_based", "State-based peridynamics, domains with holes (section 4.6)", given)
     report.text(
-        "What was asked: other peridynamic models, on unstructured domains. The linear ordinary state-based model "
+        "Subject: other peridynamic models, on unstructured domains. The linear ordinary state-based model "
         "(Silling et al. 2007, in plane strain) is the bond-based one and the square of the dilatation times "
         "lambda - mu: it has any Poisson's ratio, where the bond-based one has 1/4. Forces reach twice the horizon, "
         f"and so does the interaction layer. Linear basis, kernel 1/r^{_P:g} times the tensor of (4.4)."
@@ -191,7 +191,7 @@ def ratio_findings(report: Report, ratios: dict[float, Found], bonds: Found) -> 
     """Condition numbers and iterations by Poisson's ratio, and of the bond-based model."""
     conditions = {nu: f.condition for nu, f in ratios.items()}
     listed = ", ".join(f"{v:.4g} with nu = {nu:g}" for nu, v in conditions.items())
-    report.finding("4.6", f"With nu = {BONDS} the condition number is that of the bond-based model",
+    report.finding("4.6", f"With nu = {BONDS} the condition number equals the bond-based model's",
                    abs(conditions[BONDS] / bonds.condition - 1) <= SAME,
                    f"{conditions[BONDS]:.7g} and {bonds.condition:.7g}", own=True, criterion=f"within {SAME:g}",
                    proof="the factor lambda - mu of the square of the dilatation is 0: both matrices are the same")
@@ -199,7 +199,7 @@ def ratio_findings(report: Report, ratios: dict[float, Found], bonds: Found) -> 
     report.finding("4.6", f"The condition number grows with Poisson's ratio above {BONDS}", increasing(above), listed,
                    own=True, criterion="it is larger with each larger ratio")
     most = max(v for nu, v in conditions.items() if nu <= _MODERATE)
-    report.finding("4.6", f"Up to nu = {_MODERATE} it is at most twice that of the bond-based model",
+    report.finding("4.6", f"Up to nu = {_MODERATE} it is at most twice the bond-based model's",
                    less(most, 2 * bonds.condition, _TOLERANCE), f"{listed}; bond-based {bonds.condition:.4g}", own=True)
     entries = min(f.entries for nu, f in ratios.items() if nu != BONDS) / bonds.entries
     report.finding("4.6", "A row has more than twice the entries of the bond-based model's", entries > 2,
@@ -232,7 +232,7 @@ def plate_findings(report: Report, errors: dict[str, dict[float, float]]) -> Non
     """Errors of the plate by model and delta."""
     listed = {name: ", ".join(f"{v:.3g} with delta = {d:g}" for d, v in row.items()) for name, row in errors.items()}
     state, bonds = list(errors["state-based"].values()), list(errors["elastic"].values())
-    report.finding("4.6", "State-based: the solution tends to that of Hooke's law as delta tends to 0",
+    report.finding("4.6", "State-based: the solution tends to the solution of Hooke's law as delta tends to 0",
                    exponent(list(errors["state-based"]), state) > 1, listed["state-based"], own=True,
                    criterion="order above 1 in delta")
     report.finding("4.6", "Bond-based: it does not, as its Poisson's ratio is another one",

@@ -19,8 +19,9 @@ JUDGED = 1.0  # the dissertation's largest motion
 SMALL_CELLS = (400, 1500)  # triangles, tetrahedra
 #: The domain and the amount of each case.
 CASES = tuple((example.domain, amount) for amount in AMOUNTS for example in EXAMPLES)
-EQUAL = 1e-8  # of the size of a domain: displacements that are the same but for rounding
-#: Names of what is minimized, and their titles. T is the Jacobian of the deformed element by the initial one's inverse.
+EQUAL = 1e-8  # of the size of a domain: displacements that are equal up to rounding
+#: Names of the minimized sums, and their titles. T is the Jacobian of the deformed element by the initial one's
+#: inverse.
 SYSTEMS = {
     "femwarp": "FEMWARP: area |T - I|^2",
     "equal": "|T - I|^2",

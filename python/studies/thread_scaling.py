@@ -44,7 +44,7 @@ def _quality(mesh: vtkDataSet, threads: int) -> np.ndarray:
     return np.concatenate([found.values[name] for name in _METRICS])
 
 
-#: What is timed, by the name of the function.
+#: The timed work, by the name of the function.
 WORKS: dict[str, Callable[[vtkDataSet, int], np.ndarray]] = {
     "optimize": _optimize, "warp": _warp, "solve": _solve, "quality": _quality}
 
@@ -65,9 +65,9 @@ def main(arguments: Sequence[str]) -> int:
     made = parser("thread_scaling", __doc__, cells=_CELLS, threads=0, repeats=_REPEATS)
     given = made.parse_args(arguments)
     report = Report("thread_scaling", "Times by the number of threads (chapter 6)", given)
-    report.text("What was asked: the speed-up of mesh optimization by threads. Wall-clock seconds, the least of "
-                f"{given.repeats} runs; the number of cores is {os.cpu_count()}. Speed-ups are of this machine; what "
-                "is judged is that the results do not depend on the number of threads.")
+    report.text("Subject: the speed-up of mesh optimization by threads. Wall-clock seconds, the least of "
+                f"{given.repeats} runs; the number of cores is {os.cpu_count()}. Speed-ups are of this machine; the "
+                "criterion is that the results do not depend on the number of threads.")
     domain = tautline.domain("disk2d", given.cells or (_SMALL_CELLS if given.small else _CELLS))
     mesh = tautline.perturb(domain, seed=1, threads=given.threads).mesh
     most = given.threads or os.cpu_count() or 1

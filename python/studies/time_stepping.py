@@ -23,7 +23,7 @@ REPEATS = 3
 #: Order in time of each scheme, and how far the measured one may be off.
 ORDERS = {"backward euler": 1, "bdf2": 2, "crank-nicolson": 2, "newmark": 2}
 ORDER_TOLERANCE = 0.1
-#: Of the measured orders: 1/h of the grid, end of the time, numbers of steps.
+#: For the measured orders: 1/h of the grid, end of the time, numbers of steps.
 GRID, END, STEPS = 16, 0.1, (20, 40, 80)
 EXACT = 1e-12  # relative tolerance of the linear systems there
 #: Solver and preconditioner; of Table 2.5 the methods for symmetric positive definite matrices.
@@ -45,8 +45,8 @@ def main(arguments: list[str]) -> int:
     given = made.parse_args(arguments)
     report = Report("time_stepping", "Time-dependent problems (section 2.8)", given)
     report.text(
-        "What was asked: which combination of preconditioner and solver is the fastest for time-dependent problems, "
-        "where the matrix stays and each step starts from the steps before. Heat equation by BDF2, wave equation by "
+        "Question: which combination of preconditioner and solver is the fastest for time-dependent problems, "
+        "where the matrix stays and each step starts from the steps before? Heat equation by BDF2, wave equation by "
         f"Newmark's method, on the wrench smoothed by IMR, {FEW} and {MANY} steps; CPU seconds with assembly and "
         f"set-up, {given.repeats} run(s). Orders in time on a grid with 1/h = {GRID}, against the exact solution in "
         "time of an eigenmode."
@@ -129,7 +129,7 @@ def order_findings(report: Report, orders: dict[str, float]) -> None:
 
 
 def findings(report: Report, stationary: Row, rows: dict[tuple[str, int], Row], masses: dict[str, Row]) -> None:
-    """What is the fastest: the dissertation asks it of time-dependent problems; so these are statements of our own."""
+    """The fastest combination: the dissertation asks for it; so these statements are our own."""
 
     def finding(where: str, claim: str, holds: Verdict, ours: str, rule: str = "than all other combinations") -> None:
         report.finding(f"2.8, {where}", claim, holds, ours, own=True,
@@ -139,10 +139,10 @@ def findings(report: Report, stationary: Row, rows: dict[tuple[str, int], Row], 
             shown(stationary))
     for equation in EQUATIONS:
         few, many = rows[equation, FEW], rows[equation, MANY]
-        finding(equation, "CG with AMG is the fastest over many steps, too", quickest_of(many, CG_AMG), shown(many))
+        finding(equation, "CG with AMG is also the fastest over many steps", quickest_of(many, CG_AMG), shown(many))
         finding(equation, "A factorization, done once, is the fastest over many steps", quickest_of(many, DIRECT),
                 shown(many))
-        finding(equation, "The fastest combination of one step is that of many steps", same(few, many),
+        finding(equation, "The fastest combination is the same for one step and for many", same(few, many),
                 f"{FEW} step: {shown(few)}; {MANY} steps: {shown(many)}",
                 "in both cases than all other combinations")
     one, other = (masses[mass].get("cg + jacobi") for mass in ("lumped", "consistent"))

@@ -54,7 +54,7 @@ def runs_of(edge: float, iterations: int, patch_iterations: int, c: float, threa
 
 
 def sensitivity(report: Report, small: bool, threads: int) -> list[list[float]]:
-    """Inverted elements after one iteration in other settings, a table; by setting those of MULTI."""
+    """Inverted elements after one iteration in other settings, a table; by setting the counts of MULTI."""
     table = []
     units, shifts = ((UNITS[0], UNITS[-1]), (SHIFT,)) if small else (UNITS, SHIFTS)
     settings = [(shift, edge, steps, c, where) for shift in shifts for edge in units

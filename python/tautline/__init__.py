@@ -56,7 +56,7 @@ if TYPE_CHECKING:
     from ._classes import *
 globals().update(_vtk.CLASSES)
 
-# What needs a compiled module that is optional. One that was built but cannot be imported raises ImportError.
+# Names that need an optional compiled module. A module that was built but cannot be imported raises ImportError.
 if _vtk.available("_optimization"):
     from ._optimization import optimize
     from ._optimization_parts import OptimizeResult

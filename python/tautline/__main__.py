@@ -17,7 +17,7 @@ from ._errors import Error
 from ._interrupts import reporting
 
 _EPILOG = """COMMAND --help explains a command, with an example; --help-all shows all its options. The file to write is
-the option -o or the last argument. Names of methods and presets are found in any case.
+the option -o or the last argument. Names of methods and presets are case-insensitive.
 The file name - is a .vtu mesh from the standard input or to the standard output:
   python3 -m tautline untangle part.vtu -o - | python3 -m tautline optimize - -o better.vtu
 On a terminal, commands that take long show a progress bar, on stderr.
@@ -43,7 +43,7 @@ _GROUPS = {
 
 
 class _TopParser(Parser):
-    """The parser of the commands, whose help has them in groups."""
+    """The parser of the commands; its help lists them in groups."""
 
     def short_usage(self) -> str:
         return f"{self.prog} COMMAND [FILE...] [OPTION...]"
@@ -77,7 +77,7 @@ def _parser() -> argparse.ArgumentParser:
     study = commands.add_parser("study", add_help=False, help=text)
     study.add_argument("arguments", nargs=argparse.REMAINDER)
     study.set_defaults(run=_run_study, quiet=False, json=False)
-    help_ = commands.add_parser("help", help="show this help, or that of a command")
+    help_ = commands.add_parser("help", help="show this help, or the help of a command")
     help_.add_argument("name", metavar="COMMAND", nargs="?", choices=[*commands.choices], help="a command")
 
     def show(arguments: argparse.Namespace) -> int:
@@ -100,7 +100,7 @@ def _run_study(arguments: argparse.Namespace) -> int:
 
 
 def _show_warning(message: Warning | str, *_place: Any, **_options: Any) -> None:
-    """A warning as a sentence, without the line of the source that gave it."""
+    """A warning as a sentence, without the source line that issued it."""
     print(f"tautline: warning: {message}", file=sys.stderr)
 
 

@@ -29,7 +29,7 @@ from ._views import point_data_of, viewed
 #: Takes a mesh, and returns it, or another one, with a point array; or returns the values, one row per point.
 Solver = Callable[[Any], Any]
 
-_METRIC = "Adapt metric"  # the name of the tensors on the way
+_METRIC = "Adapt metric"  # the name of the intermediate tensors
 _SOLUTION = "Solution"  # the name of a field that is given by its values
 #: Cell arrays of improve(), which are about the mesh of the iteration before.
 _OF_IMPROVE = ("OriginalCellId", "min_angle", "imr")
@@ -37,7 +37,7 @@ _COLUMNS = ("iteration", "target", "elements", "points", "edges_in_range", "wors
             "solution_error", "gradient_error", "seconds")  # fmt: skip
 _ALL_MADE, _NO_TIME = "All iterations were made.", "The time limit was reached."
 _MOST_ELEMENTS = 5e7  # which take some 50 GB
-#: Parts of the progress of an iteration, up to the end of each step.
+#: Fraction of an iteration that is done at the end of each step.
 _METRIC_END, _IMPROVE_END = 0.1, 0.7
 
 
@@ -55,15 +55,15 @@ class AdaptResult(Result):
         Its values, a row per point.
     history : dict[str, Any]
         Per iteration (0 is the input): iteration, target (number of elements; nan with an error), elements, points,
-        edges_in_range (part of the edges, 0 to 1, with 0.71 to 1.41 times the target length), worst_in_metric (largest
-        inverse mean ratio in the metric), estimated_error (estimated norm in L2 of the error of the interpolation),
-        solution_error and gradient_error (those of solve() with `exact`), seconds. What is not known is nan.
+        edges_in_range (fraction of the edges, 0 to 1, with 0.71 to 1.41 times the target length), worst_in_metric
+        (largest inverse mean ratio in the metric), estimated_error (estimated norm in L2 of the error of the
+        interpolation), solution_error and gradient_error (from solve() with `exact`), seconds. Unknown values are nan.
     elements : int
         The number of elements of the last mesh.
     estimated_error : float
         The estimated norm in L2 of the error of the interpolation, on the last mesh.
     reason : str
-        Why the iterations ended.
+        The reason why the iterations ended.
     summary : str
         The result in words.
     """
@@ -117,16 +117,17 @@ def adapt(
     solver : callable or Mapping[str, Any]
         A function that takes a mesh, a vtkDataSet with the attributes points, cells, point_data and cell_data, and
         returns it with a point array, another mesh, a result with a mesh, or the values as an array with a row per
-        point. Arrays of the mesh before are interpolated on the mesh that it is given. Or a dict of arguments of
+        point. Arrays of the previous mesh are interpolated to the mesh that it gets. Or a dict of arguments of
         solve().
     iterations : int, default 5
         How often the mesh is adapted; the solver is called once more than that.
     field : str, optional
         The point array to adapt to. None: the solution of solve(), or the only point array that the solver adds.
     elements : float or Sequence[float], optional
-        The target number of elements: of all iterations, or one for each. None: the number of elements of the mesh.
+        The target number of elements, for all iterations or one per iteration. None: the number of elements of the
+        mesh.
     growth : float, default 1.0
-        The target number of an iteration over the number of the one before, if elements is not a sequence.
+        The ratio of the target numbers of consecutive iterations, if elements is not a sequence.
     error : float, optional
         Instead of elements: the target of the interpolation error, in the unit of the field; see metric().
     anisotropic : bool, default True
@@ -138,7 +139,7 @@ def adapt(
     smallest_size, largest_size : float, default 0.0
         Limits of the sizes; 0 is 1e-6 and 0.1 times the diagonal of the bounding box.
     largest_anisotropy : float, default 1000.0
-        The largest quotient of two sizes at a point.
+        The largest ratio of two sizes at a point.
     gradation : float, default 1.5
         The largest growth factor of sizes between neighbors, above 1; 0 is no limit.
     boundary : str, default "sliding"
@@ -160,8 +161,8 @@ def adapt(
     threads : int, default 0
         Number of threads; 0 is all cores. The result does not depend on it.
     progress : bool or callable, optional
-        True: a bar on the terminal, if there is one. Else a function, called ten times a second with the fraction done,
-        0 to 1, and a text; it cancels by returning False, which raises Aborted. Ctrl-C raises KeyboardInterrupt.
+        True: a bar on the terminal, if there is one. Otherwise a function, called ten times a second with the fraction
+        done, 0 to 1, and a text; it cancels by returning False, which raises Aborted. Ctrl-C raises KeyboardInterrupt.
 
     Returns
     -------
@@ -171,7 +172,7 @@ def adapt(
     ------
     Error
         For wrong arguments, for a solver that returns nothing, no mesh, no field or values that are not finite, if
-        solve() does not converge, and for meshes that metric() or improve() do not take.
+        solve() does not converge, and for meshes that metric() or improve() do not accept.
 
     Examples
     --------
@@ -370,7 +371,7 @@ class _Run:
         return solved
 
     def with_field(self, found: Any, before: vtkDataSet, given: vtkDataSet) -> vtkDataSet:
-        """The mesh with the field that the solver has returned; the field gets its name at the first time."""
+        """The mesh with the field that the solver has returned; the field gets its name on the first call."""
         if found is None:
             raise Error("the solver returned nothing; return the mesh with the field, or its values at the points")
         if isinstance(found, np.ndarray):
@@ -408,7 +409,7 @@ def _only_field(found: Any, arrays: Any, before: Any) -> str:
 
 
 def _copied(mesh: vtkDataSet) -> vtkDataSet:
-    """A mesh that shares all arrays, to which others can be added."""
+    """A mesh that shares all arrays and can get further ones."""
     made = mesh.NewInstance()
     made.ShallowCopy(mesh)
     return made
@@ -431,7 +432,7 @@ def _words(rows: list[dict[str, Any]], field: str, reason: str) -> str:
 
 # --- the shell ----------------------------------------------------------------------------------------------
 
-#: Options of the command solve that adapt has not: its own, and those of time steps.
+#: Options of the command solve that adapt lacks: its own options, and the ones for time steps.
 _NOT_OF_SOLVE = ("help", "help_all", "json", "quiet", "output", "csv", "threads", "time_limit", "in_place",
                  "keep_original", "time_scheme", "time_step", "time_steps", "mass", "density", "initial", "velocity",
                  "series")  # fmt: skip
@@ -465,7 +466,7 @@ def add_commands(commands: Any) -> None:
     for name, value, words in (
         ("smallest-size", 0.0, "smallest size; 0 is 1e-6 of the diagonal"),
         ("largest-size", 0.0, "largest size; 0 is 1/10 of the diagonal"),
-        ("largest-anisotropy", 1000.0, "largest quotient of two sizes at a point"),
+        ("largest-anisotropy", 1000.0, "largest ratio of two sizes at a point"),
         ("gradation", 1.5, "largest growth factor of sizes between neighbors; 0 is no limit"),
         ("feature-angle", 40.0, "edges between facets at a larger angle, in degrees, stay"),
         ("surface-angle", 20.0, "largest angle between new facets and the surface, in degrees"),
@@ -483,7 +484,7 @@ def _add_solve_options(parser: argparse.ArgumentParser, solve: argparse.Argument
     """Add the options of the command solve; returns their names."""
     group = parser.add_argument_group("options of the command solve")
     chosen = [action for action in solve._actions if action.option_strings and action.dest not in _NOT_OF_SOLVE]
-    for action in [copy(one) for one in chosen]:  # as an option belongs to one parser
+    for action in [copy(one) for one in chosen]:  # because an option belongs to one parser
         action.option_strings = [name for name in action.option_strings if name not in parser._option_string_actions]
         group._add_action(action)
     return [action.dest for action in chosen]

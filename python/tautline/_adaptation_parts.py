@@ -31,7 +31,7 @@ class MetricResult(Result):
     tensors : Array
         The metric tensors, n x 6: xx, yy, zz, xy, yz, xz.
     ellipsoids : vtkPolyData
-        Ellipsoids at up to 500 points with the sizes as diameters; point arrays `Size`, `Anisotropy`, `PointId`.
+        Ellipsoids at up to 500 points, with the sizes as diameters; point arrays `Size`, `Anisotropy`, `PointId`.
     complexity : float
         The area or volume as the metric measures it.
     elements : float
@@ -40,7 +40,7 @@ class MetricResult(Result):
     smallest_size, largest_size : float
         Extremes of the sizes, in the mesh's unit.
     anisotropy : float
-        The largest quotient of two sizes at a point.
+        The largest ratio of two sizes at a point.
     summary : str
         The result in words.
     """
@@ -68,9 +68,9 @@ def set_metric_source(
 ) -> None:
     """Set where the tensors come from.
 
-    source: "sizes" (an array of sizes or metric tensors), "hessian" (the least interpolation error of a field),
+    source: "sizes" (an array of sizes or metric tensors), "hessian" (the smallest interpolation error of a field),
         "curvature" (of the boundary of a volume, of a surface, or of the border of a planar mesh) or "distance" (layers
-        at a wall). None: as the array given says, without one "curvature".
+        at a wall). None: it follows from the array given; without one it is "curvature".
     sizes: for "sizes", a point array (its name, or one row per point): the size at each point, or a metric tensor of
         six or nine components.
     field: for "hessian", a point array (its name, or one row per point): the field whose interpolation error is
@@ -119,13 +119,13 @@ class TransferResult(Result):
     totals : list[dict[str, Any]]
         Per component that is averaged: array, data ("point" or "cell"), component, total_before, total_after (integrals
         over the elements), minimum_before, maximum_before, minimum_after, maximum_after, beyond_bounds (how far a value
-        is outside of the values that it comes from).
+        is outside the range of the values that it comes from).
     total_error : float
         The largest difference of a total, relative to the integral of the absolute value.
     largest_excess : float
-        How far a value is beyond its bounds, relative to the largest absolute value of the field.
+        The largest distance of a value from its bounds, relative to the largest absolute value of the field.
     source_covered, target_covered : float
-        The part of each mesh that the other one covers, 0 to 1; 0 with "interpolate".
+        The fraction of each mesh that the other one covers, 0 to 1; 0 with "interpolate".
     summary : str
         The result in words.
     """
@@ -139,7 +139,7 @@ class TransferResult(Result):
     summary: str
 
     def table(self) -> list[dict[str, Any]]:
-        """A row per component: what --csv writes."""
+        """A row per component, as --csv writes it."""
         return self.totals
 
 

@@ -25,17 +25,17 @@ def pick(option: str, value: Any, allowed: Sequence[str]) -> int:
 
 
 def picked(option: str, value: Any, allowed: Sequence[Name]) -> Name:
-    """The one of the allowed names that a value means; see pick()."""
+    """The allowed name that matches a value; see pick()."""
     return allowed[pick(option, value, allowed)]
 
 
 def flagged(value: str | bool, off: str, on: str) -> str:
-    """The name that True or False means; other values as they are."""
+    """The name that True or False stands for; other values are returned unchanged."""
     return (off, on)[value] if isinstance(value, bool) else value
 
 
 def sets(_functions: str, *_properties: str) -> Callable[[Function], Function]:
-    """For python/generator: the arguments of this setter are those of the functions, and set these properties."""
+    """For python/generator: the arguments of this setter are arguments of the functions, and set these properties."""
     return lambda setter: setter
 
 
@@ -74,7 +74,7 @@ def text(option: str, value: Any) -> str:
 
 
 def sequence(option: str, values: Any) -> list[Any]:
-    """The values as a list. Raises Error for a text, a number and other things that are not several values."""
+    """The values as a list. Raises Error for a text, a number and anything else that is not a sequence."""
     if isinstance(values, np.ndarray) and values.ndim == 0:
         values = values.item()
     if not isinstance(values, Iterable) or isinstance(values, (str, bytes, Mapping)):

@@ -42,14 +42,14 @@ class _Column:
         return np.asarray(self._data[self._part], float).ravel()
 
     def write(self, values: Array) -> Array:
-        """Replace the numbers; what is read then."""
+        """Replace the numbers; returns what is read afterwards."""
         old = self._data[self._part]
         self._data[self._part] = values.reshape(np.shape(old)).astype(old.dtype)
         return self.read()
 
 
 class _NetcdfColumn(_Column):
-    """Numbers of a netCDF file of the older kind, which are big-endian, from one byte on."""
+    """Big-endian numbers of a netCDF file of the older kind, starting at a byte."""
 
     def __init__(self, file: Any, begin: int, count: int, dtype: str) -> None:
         self._file, self._begin, self._count, self._dtype = file, begin, count, np.dtype(dtype)
@@ -99,7 +99,7 @@ def _replace(source: str, parts: _Parts, before: list[Array], after: list[Array]
     if len(parts) != len(before):
         raise changed(source, f"it has {len(parts)} parts with points and the mesh {len(before)}")
     found = []
-    for columns, old in zip(parts, before):  # everything is checked before anything is written
+    for columns, old in zip(parts, before):  # check everything before anything is written
         values = [column.read() for column in columns]
         if any(len(value) != len(old) for value in values):
             raise changed(source, f"it has {len(values[0])} points and the mesh {len(old)}")
@@ -121,7 +121,7 @@ def _replace(source: str, parts: _Parts, before: list[Array], after: list[Array]
 
 
 def _combined(source: str, before: list[Array], after: list[Array]) -> Array:
-    """The points of a file of which every block of the mesh has all; each moved by the blocks that use them."""
+    """The points of a file, of which every block has a full copy; a point moves with the blocks that use it."""
     made = after[0].copy()
     moved = (after[0] != before[0]).any(axis=1)
     for old, new in zip(before[1:], after[1:]):
@@ -153,7 +153,7 @@ def _in_med(source: str, file: Any) -> _Parts:
 
 
 def _labeled(group: Any, label: str) -> Iterator[Any]:
-    """The nodes of CGNS with a label below another one."""
+    """The nodes of CGNS with a label, below another node."""
     for name in group:
         attributes = getattr(group[name], "attrs", {})
         if bytes(attributes.get("label", b"")).rstrip(b"\0 ").decode("latin-1") == label:

@@ -21,10 +21,10 @@ Array = NDArray[Any]
 #: The name of an array of the mesh, or numbers, one row per cell or point.
 Values = Union[str, Sequence[Any], Array]
 
-#: What an array belongs to.
+#: The association of an array.
 ANY, CELLS, POINTS = "any", "cells", "points"
 
-#: Columns of histories whose names differ in the results.
+#: Columns of histories that have other names in the results.
 _HISTORY_COLUMNS = {"Time (s)": "seconds", "N moving": "moving", "N gradient": "gradient_norm"}
 _GIVEN = "given "  # prefix of the names under which arrays of numbers are added to a copy of the mesh
 
@@ -59,12 +59,12 @@ _SOURCE = "source_file"
 
 
 def source_of(data: Any) -> str:
-    """The full name of the file that a mesh was read from, or the mesh that a filter has moved; "" if there is none."""
+    """The full name of the file that a mesh, or the mesh that a filter moved, was read from; "" if there is none."""
     return str(getattr(data, _SOURCE, ""))
 
 
 def keep_source(data: Any, file: str) -> None:
-    """Note the file of a mesh; it is no part of the mesh and is not written."""
+    """Record the file of a mesh; it is not part of the mesh and is not written."""
     if file:
         setattr(data, _SOURCE, file)
 
@@ -189,7 +189,7 @@ def with_array(
 ) -> tuple[vtkDataObject, int, str]:
     """The mesh with an input array, its association (vtkDataObject.FIELD_ASSOCIATION_...) and its name.
 
-    values: the name of an array of the mesh (if cells and points both have one, that of the cells is taken), or
+    values: the name of an array of the mesh (the cell array if cells and points both have one), or
         numbers, one row per cell or per point, which are added to a shallow copy of the mesh.
     name, on, scalar: see InputArrays.use().
 

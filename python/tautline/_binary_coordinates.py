@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Where coordinates stand in binary files of Gmsh and Medit, and files with other ones in their place."""
+"""Positions of the coordinates in binary files of Gmsh and Medit, and their replacement."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _DOUBLE = struct.calcsize("d")
 _INT = struct.calcsize("i")
 _SIZE = struct.calcsize("Q")
 _GMSH, _MEDIT = (".msh", ".msh2", ".msh4"), ".meshb"
-#: Gmsh's versions with blocks of points, and with all numbers of a block first.
+#: Versions of Gmsh's format with blocks of points, and with all numbers of a block first.
 BLOCKS, NUMBERS_FIRST = 4.0, 4.1
 _PARAMETRIC = "binary .msh with parametric nodes are not handled: save it without them, or as text"
 #: Codes of sections of Medit.
@@ -25,7 +25,7 @@ _DIMENSION, _VERTICES, _END = 3, 4, 54
 
 @dataclass(frozen=True)
 class Runs:
-    """Points in a file: their places and numbers, one run after the other."""
+    """Points in a file: their positions and numbers, run by run."""
 
     #: The byte of the first coordinate and the number of points of each run.
     runs: list[tuple[int, int]]
@@ -42,7 +42,7 @@ def changed(source: str, reason: str) -> Error:
 
 
 def check_equal(source: str, found: Array, before: Array) -> None:
-    """Raise Error unless the coordinates in a file are those that were read from it."""
+    """Raise Error unless the coordinates in a file are the ones that were read from it."""
     wrong = (found != before).any(axis=1)
     if wrong.any():
         i = int(np.flatnonzero(wrong)[0])
@@ -79,7 +79,7 @@ def with_coordinates(source: str, content: bytes, place: Runs, before: Array, af
         found = np.zeros_like(old)
         found[:, : place.dimension] = np.ascontiguousarray(made[rows]).view(place.dtype)
         check_equal(source, as_read(found, old), old)
-        new = np.where(new == old, found, new)  # what has not moved stays as it is in the file
+        new = np.where(new == old, found, new)  # unmoved coordinates stay as they are in the file
         with np.errstate(over="ignore"):
             numbers = np.ascontiguousarray(new[:, : place.dimension], place.dtype)
         if not np.isfinite(numbers).all():
@@ -121,7 +121,7 @@ def _of_msh(source: str, content: bytes) -> Runs | None:
 
 
 def _of_meshb(source: str, content: bytes) -> Runs:
-    """The reader has accepted the file: its sections are where its table of positions says."""
+    """The reader has accepted the file: its sections are at the positions in its table."""
     order = "<" if content[:_INT] == struct.pack("<i", 1) else ">"
     version = struct.unpack_from(f"{order}i", content, _INT)[0]
     whole, position = ("q" if version >= least else "i" for least in (4, 3))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The build this package belongs to: its version, and the Python and VTK that its compiled modules need.
+"""The build that this package belongs to: its version, and the Python and VTK that its compiled modules need.
 
-The file build.json beside this one is written when the package is built. It is the only place in which the package
-finds its version, which is that of the project in the top CMakeLists.txt.
+The file build.json beside this one is written when the package is built. It is the only source of the package's
+version, which comes from the top CMakeLists.txt.
 """
 
 import json

@@ -34,7 +34,7 @@ CELLS = {
 CELLS_BY_NUMBER = {number: name for name, (number, _) in CELLS.items()} | {
     2: "polyvertex", 4: "polyline", 6: "triangle strip", 7: "polygon", 42: "polyhedron",
 }  # fmt: skip
-#: Other names, those of meshio and of PyVista among them.
+#: Other names, among them the names in meshio and in PyVista.
 ALIASES = {
     "tri": "triangle",
     "quad": "quadrilateral",
@@ -54,7 +54,7 @@ ALIASES = {
 
 
 def find_cell(name: str, known: list[str]) -> str | None:
-    """The one of the known names that a name of a cell means, in any case; None if there is none."""
+    """The known name that a name of a cell stands for, case-insensitive; None if there is none."""
     folded = name.strip().casefold()
     found = ALIASES.get(folded, folded)
     return found if found in known else None

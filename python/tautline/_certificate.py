@@ -24,7 +24,7 @@ from ._io import Mesh, as_data_set
 from ._vtk import CLASSES
 
 FORMAT = "tautline certificate 1"
-#: What bounds miss of the minimum at most, of the largest coefficient of the determinant.
+#: The largest gap between a bound and the minimum, relative to the largest coefficient of the determinant.
 TOLERANCE = 1e-8
 #: Exit code of the command for a mesh whose certificate does not hold.
 REFUTED = 3
@@ -40,13 +40,13 @@ class Verification:
     Attributes
     ----------
     holds : bool
-        Whether the mesh is the one of the certificate, every bound holds and all verdicts follow from the bounds.
+        Whether the mesh is the certified one, every bound holds and all verdicts follow from the bounds.
     valid : int
         Elements that the certificate proves to be valid.
     cells : int
         Elements of the mesh.
     problems : list[str]
-        What does not hold, in sentences; empty if everything does.
+        The failures, in sentences; empty if everything holds.
     """
 
     holds: bool
@@ -74,10 +74,11 @@ def certificate(mesh: Mesh, file: str | PathLike[str] | None = None) -> dict[str
     -------
     dict[str, Any]
         format; program (name and version); points, cells (their numbers); sha256, of the coordinates, types and nodes
-        of the cells; tolerance: what a bound misses of the minimum at most, of the largest coefficient of the
-        determinant; valid (number of elements); elements: for each its verdict ("valid", "degenerate", "invalid", "not
-        measured", "not finite") and the lower bound of its Jacobian determinant, or on surfaces in space of the
-        component of its normal along the mean normal. An element is proved to be valid if its bound is positive.
+        of the cells; tolerance: the largest gap between a bound and the minimum, relative to the largest coefficient of
+        the determinant; valid (number of elements); elements: for each element its verdict ("valid", "degenerate",
+        "invalid", "not measured", "not finite") and the lower bound of its Jacobian determinant, or on surfaces in
+        space of the component of its normal along the mean normal. An element is proved to be valid if its bound
+        is positive.
 
     Examples
     --------
@@ -113,18 +114,18 @@ def certificate_text(made: dict[str, Any]) -> str:
 
 @checked
 def verify_certificate(mesh: Mesh, certificate: dict[str, Any] | str | PathLike[str]) -> Verification:
-    """Check a certificate by other means than those it was made by; see certificate().
+    """Check a certificate with an independent method; see certificate().
 
-    The mesh must be the one of the certificate, and each bound must hold: determinants are computed from the shape
+    The mesh must be the certified one, and each bound must hold: determinants are computed from the shape
     functions of VTK's own cells, written in Bernstein polynomials by solving linear systems, and compared with the
-    bounds less 1e-7 of the largest coefficient, and less half a positive bound at most.
+    bounds, less 1e-7 of the largest coefficient but at most half of a positive bound.
 
     Parameters
     ----------
     mesh : Mesh
         A vtkDataSet, a file name, the result of another function, or (points, cells).
     certificate : dict, str or path
-        What certificate() has returned, or its file.
+        The return value of certificate(), or its file.
 
     Returns
     -------
@@ -153,7 +154,7 @@ def verify_certificate(mesh: Mesh, certificate: dict[str, Any] | str | PathLike[
 
 
 def mesh_hash(grid: vtkDataSet) -> str:
-    """SHA-256 of the coordinates, and of the types and nodes of all cells, whatever types of numbers these have."""
+    """SHA-256 of the coordinates, and of the types and nodes of all cells, for any types of these numbers."""
     digest = hashlib.sha256()
     places = _places(grid)
     types, offsets, nodes = _cells(grid)
@@ -214,8 +215,8 @@ def _contents(given: dict[str, Any]) -> tuple[list[str], Array]:
 
 
 def _check(grid: vtkDataSet, verdicts: list[str], bounds: Array) -> tuple[list[int], list[int], list[int]]:
-    """The elements that are not above their bounds, those that these do not prove to be valid, and the valid ones of a
-    type that is not checked."""
+    """The elements that are not above their bounds, elements that the bounds do not prove valid, and valid elements of
+    an unchecked type."""
     types, offsets, nodes = _cells(grid)
     sizes, places = np.diff(offsets), _places(grid)
     degrees = _degrees(grid)
@@ -246,7 +247,7 @@ def _check(grid: vtkDataSet, verdicts: list[str], bounds: Array) -> tuple[list[i
         scale = np.abs(values).max(axis=axes)
         least = bounds[cells] - np.where(bounds[cells] > 0, np.minimum(SLACK * scale, bounds[cells] / 2), SLACK * scale)
         wrong += cells[~above(domain, values, least)].tolist()
-        # A normal that turns by more than a right angle may be without zeros all the same.
+        # A normal that turns by more than a right angle may still have no zeros.
         turned = np.flatnonzero(valid[cells] & (bounds[cells] <= 0))
         if domain.surface and len(turned):
             finer, squares = squared(domain, found[turned])

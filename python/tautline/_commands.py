@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the commands of the shell share: options, types of their values, input and output."""
+"""The common parts of the shell commands: options, types of their values, input and output."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _HELP_WIDTH = 100
 _INPUTS = ("mesh", "input", "before", "after", "reference", "target", "geometry", "outline", "surface")
 _STANDARD_INPUT = "standard-input.vtu"
 _CHANGING = ("improve", "adapt")  # the commands that change cells
-#: Commands that move points, and can write formats of which there are only copies with other coordinates.
+#: Commands that move points, which can also write formats that are only copied with new coordinates.
 _MOVING = ("optimize", "untangle", "warp", "perturb")
 
 EXIT_CODES = """exit codes:
@@ -46,7 +46,7 @@ EXIT_CODES = """exit codes:
   130  interrupted by Ctrl-C"""
 
 
-#: The options that --help shows, by command, besides those of ALWAYS; --help-all shows all. Other commands show all.
+#: The options that --help shows, by command, besides the ones in ALWAYS; --help-all shows all. Other commands show all.
 BASIC = {
     "quality": ("output", "csv", "metrics", "worst", "criteria", "groups", "report"),
     "optimize": ("output", "csv", "preset", "objectives", "boundary", "fixed", "limits", "maximum_iterations"),
@@ -71,10 +71,10 @@ _IN_PLACE = "in_place"
 
 
 class Parser(argparse.ArgumentParser):
-    """A parser whose choices are found in any case, and whose messages name the nearest one.
+    """A parser with case-insensitive choices, whose messages name the nearest one.
 
     Errors come with one line of usage. The file to write may be the last argument, in the place of -o; `more` are
-    further files to read. Both may stand between options.
+    further files to read. Both may be between options.
     """
 
     def __init__(self, *arguments: Any, **options: Any) -> None:
@@ -195,7 +195,7 @@ class _HelpAll(argparse.Action):
 
 
 def _choices(action: argparse.Action) -> list[str]:
-    """The names an option has to be chosen from; none of the commands."""
+    """The allowed values of an option; none for the commands."""
     if action.choices is None or isinstance(action, argparse._SubParsersAction):
         return []
     return [name for name in action.choices if isinstance(name, str)]
@@ -270,8 +270,8 @@ def add_time_limit(parser: argparse.ArgumentParser, default: float = 0.0) -> Non
 
 
 def add_merge_points(parser: argparse.ArgumentParser) -> None:
-    """Add the option of the points at the same place."""
-    add_flag(parser, "merge_coincident_points", "whether points at the same place on matching facets are one")
+    """Add the option of the coincident points."""
+    add_flag(parser, "merge_coincident_points", "whether coincident points on matching facets are one point")
 
 
 def add_flag(
@@ -298,7 +298,7 @@ def numbers(text: str) -> list[float]:
 
 
 def number_or_name(text: str) -> float | str:
-    """A number, or the text where it is none."""
+    """A number, or the text if it is not a number."""
     try:
         return float(text)
     except ValueError:
@@ -306,7 +306,7 @@ def number_or_name(text: str) -> float | str:
 
 
 def numbers_or_text(text: str, kind: type = float) -> Any:
-    """A list of numbers if the text is numbers with commas between them, else the text."""
+    """A list of numbers if the text has numbers with commas between them, otherwise the text."""
     try:
         return [kind(part) for part in text.split(",")]
     except ValueError:
@@ -372,7 +372,7 @@ def finish(
 
     text: the result in words. rows: for the file --csv. texts: more files with their contents. facts: what --json
     prints if there is no result with to_dict(). options: of write(). The files are listed after the text, in the JSON
-    as `files`. With --output -, what else is printed goes to stderr.
+    as `files`. With --output -, everything else is printed to stderr.
     """
     out = sys.stderr if getattr(arguments, "output", None) == STREAM else sys.stdout
     silent = arguments.quiet or arguments.json

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Of compare(): its result, and arguments that are not one property each."""
+"""The result of compare(), and its arguments that are not one property each."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class CompareResult(Result):
     difference : dict[str, Array]
         Per metric the value after minus the value before on each cell, m.
     change : Array
-        Per cell, m: 1 better by some metric and worse by none, -1 the opposite, else 0.
+        Per cell, m: 1 better by some metric and worse by none, -1 the opposite, otherwise 0.
     displacement : Array
         Second minus first position, n x 3.
     summary : str
@@ -49,7 +49,7 @@ class CompareResult(Result):
     summary: str
 
     def table(self) -> list[dict[str, Any]]:
-        """A row per metric: what --csv writes."""
+        """A row per metric, as --csv writes it."""
         return comparison_rows(self)
 
 
@@ -75,7 +75,7 @@ def compare_result(filter_: Any, mesh: vtkDataObject) -> CompareResult:
     """The result of a filter that has run."""
     table = columns(filter_.GetOutputDataObject(1))
     rows = {name: row for row, name in enumerate(table.pop("Metric", ()))}
-    # The table is on the first rank of MPI; the others know what they measured by its arrays.
+    # The table is on the first rank of MPI; the others find the measured metrics by its arrays.
     names = list(rows) or [m["name"] for m in known_metrics() if has_array(mesh, f"{m['name']}_difference", CELLS)]
     return CompareResult(
         mesh=mesh,

@@ -34,7 +34,7 @@ def formats() -> list[dict[str, Any]]:
     list[dict[str, Any]]
         A dict for each: ending; format (its name); read, write (whether it is possible here); times (whether files have
         time steps); by ("Tautline", "VTK" or "meshio", which reads it); comes_back (whether a file can be the template
-        of write(), so that after a motion of points it comes back with new coordinates and all else as it was).
+        of write(), so that after a motion of points it comes back with new coordinates and is otherwise unchanged).
 
     Examples
     --------
@@ -93,7 +93,7 @@ def add_commands(commands: Any) -> None:
 
     parser = _commands.add_command(
         commands, "formats", _run_formats, "list the formats of mesh files", example="", threads=False,
-        details="What can be read and written here, by which program.",
+        details="Lists the formats that can be read and written here, with the program that does it.",
     )  # fmt: skip
 
 

@@ -16,7 +16,7 @@ from ._results import Result
 
 @dataclass(frozen=True, repr=False, eq=False)
 class CurveResult(Result):
-    """The result of curve(). Of composite data, counts are those of all blocks and distances the largest.
+    """The result of curve(). For composite data, counts are sums over all blocks, and distances are the largest.
 
     Attributes
     ----------
@@ -29,7 +29,7 @@ class CurveResult(Result):
     invalid_before, invalid : int
         Number of invalid elements before and after, certified.
     largest_offset, mean_offset : float
-        Distances of the nodes of the boundary from where the cells of the input have them.
+        Distances of the boundary nodes from their positions in the cells of the input.
     distance_before, distance : float
         Largest distance of the boundary from the geometry, before and after; 0 without one.
     summary : str

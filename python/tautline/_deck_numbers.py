@@ -54,7 +54,7 @@ def value_of(text: bytes) -> float:
 
 
 def nastran_number(value: float, width: int) -> str:
-    """A number in a field of so many characters: with as many digits as there is room for, with a point or Nastran's
+    """A number in a field of this many characters: with as many digits as fit, with a point or Nastran's
     exponent without a letter."""
     found = []
     for form in ("f", "e"):

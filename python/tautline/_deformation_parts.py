@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Of warp(): its result, and arguments that are not one property each."""
+"""The result of warp(), and its arguments that are not one property each."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ Transform = Union[Mapping[str, Any], Sequence[Any], vtkLinearTransform]
 
 @dataclass(frozen=True, repr=False, eq=False)
 class WarpResult(Result):
-    """The result of warp(). Of composite data, numbers are of all blocks.
+    """The result of warp(). For composite data, numbers cover all blocks.
 
     Attributes
     ----------
@@ -56,19 +56,19 @@ class WarpResult(Result):
         The mesh with the new points, `Displacement`, `TMP shape` and `Validity`.
     inverted, inverted_after_warp, impossible : int
         Number of inverted or degenerate elements at the end, and after the deformation without the final optimization;
-        and of those that no positions of interior points make valid, since the moved boundary itself is invalid.
+        and of the elements that no interior point positions make valid, because the moved boundary itself is invalid.
     history : dict[str, Any]
-        Per stage: amount, inverted, worst_shape, mean_shape, stage (list of str), iterations, seconds; of composite
+        Per stage: amount, inverted, worst_shape, mean_shape, stage (list of str), iterations, seconds; for composite
         data also block.
     statistics : dict[str, Any]
         elements, boundary_points, moved_points, largest_displacement, amount, inverted_after_warp, inverted,
         impossible, crossings, worst_shape, mean_shape, worst_imr_before, mean_imr_before, worst_imr, mean_imr, cxx to
-        cxz, decoupled, regularization, reused, and assemble_, set_up_, solve_, improve_ and total_seconds. Of composite
-        data a dict of these per block.
+        cxz, decoupled, regularization, reused, and assemble_, set_up_, solve_, improve_ and total_seconds. For
+        composite data, a dict of these per block.
     displacement : Array
         New minus old position, n x 3.
     shape : Array
-        TMP shape metric per cell, m; 0 where the shape is that of the undeformed element.
+        TMP shape metric per cell, m; 0 if the element has its undeformed shape.
     validity : Array
         Per cell, m: 1 valid, 0 degenerate, -1 inverted, -2 not measured.
     summary : str
@@ -100,14 +100,14 @@ def set_motion(
     transform: Transform | None = None,
     target_ids: Values | None = None,
 ) -> None:
-    """Set the motion of the boundary, of which exactly one has to be given.
+    """Set the motion of the boundary; exactly one of the first three arguments is required.
 
     displacement: the name of a point array, or n x 3 (in the plane n x 2) numbers; values at interior points are
         ignored.
     target: the mesh or its boundary in the new position, or any surface (in the plane a curve) to project it to.
     transform: of the part `moved`: {"translate": (x, y, z)}, {"rotate": degrees, "axis": (0, 0, 1)}, {"scale":
         factor or three of them}, {"bend": degrees, "axis": (0, 0, 1), "direction": (1, 0, 0)}, each about a
-        "center", by default that of the moved points; a 4 x 4 matrix; or a vtkLinearTransform.
+        "center", by default the center of the moved points; a 4 x 4 matrix; or a vtkLinearTransform.
     target_ids: for the correspondence "point ids": the name of a point array of the target, with values of the mesh's
         point array of the same name or with point numbers of the mesh; or such point numbers, one per point of the
         target.
@@ -263,7 +263,7 @@ def set_coefficients(
 def set_solver(filter_: Any, solver: Solver = "automatic") -> None:
     """Set the solver.
 
-    solver: of the linear systems: "automatic", "cg", "gmres", "minres", "bicgstab", "direct".
+    solver: the solver of the linear systems: "automatic", "cg", "gmres", "minres", "bicgstab", "direct".
     """
     number = pick("solver", solver, SOLVERS)
     filter_.SetAutomaticSolver(number == 0)
@@ -330,7 +330,7 @@ def add_warp_options(parser: argparse.ArgumentParser) -> None:
     motion.add_argument("--bend", metavar="DEGREES", type=float)
     parser.add_argument("--axis", metavar="X,Y,Z", type=numbers, help="to rotate or bend about (default: 0,0,1)")
     parser.add_argument("--direction", metavar="X,Y,Z", type=numbers, help="of the bar to bend (default: 1,0,0)")
-    parser.add_argument("--center", metavar="X,Y,Z", type=numbers, help="(default: that of the moved points)")
+    parser.add_argument("--center", metavar="X,Y,Z", type=numbers, help="(default: center of the moved points)")
     parser.add_argument("--moved", metavar="PART", help="automatic (the default), 'whole boundary', 'inner "
                         "boundaries', numbers of boundary parts (1,3), or the name of an array")  # fmt: skip
     parser.add_argument("--values", metavar="V,...", type=numbers, default=(), help="of that array (default: not 0)")

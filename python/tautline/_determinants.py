@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Whether the Jacobian determinants of cells are above given bounds: a check that shares nothing with the kernel.
+"""Checks whether the Jacobian determinants of cells are above given bounds, with no code of the kernel.
 
-The shape functions are those of VTK's own cells, sampled and written in Bernstein polynomials by solving a linear
-system: VTK's derivatives are wrong for quadratic pyramids (VTK 9.2). The determinant is a polynomial, which is sampled
+The shape functions come from VTK's own cells, are sampled and converted to Bernstein form by solving a linear system:
+VTK's derivatives are wrong for quadratic pyramids (VTK 9.2). The determinant is a polynomial, which is sampled
 and written in the same way, and is at least its smallest coefficient; where that does not prove a bound, the cell is
-divided, up to a corner that disproves it.
+subdivided, until a corner value disproves the bound.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from vtkmodules.vtkCommonDataModel import vtkCell, vtkDataSet, vtkUnstructuredGr
 from ._arrays import Array
 
 _LINE, _TRIANGLE, _TETRAHEDRON = 1, 2, 3
-#: VTK's types by shape: those with a fixed order, and what order they have at most by axis.
+#: VTK's types of fixed order by shape, with their maximum order by axis.
 _TRIANGLES = {5: 1, 22: 2, 34: 3}
 _QUADRILATERALS = {9: (1, 1), 23: (2, 2), 28: (2, 2), 30: (2, 1)}
 _TETRAHEDRA = {10: 1, 24: 2}
@@ -31,7 +31,7 @@ _PYRAMIDS = {14: 1, 27: 2}
 _LAGRANGE, _BEZIER, _LAST_SHAPE = 69, 76, 4  # triangle, quadrilateral, tetrahedron, hexahedron, wedge
 _LAGRANGE_WEDGE, _WEDGE18 = 73, 32
 _BUBBLES = {(0, 7): (3, 3, 0), (2, 15): (4, 4, 4), (4, 21): (3, 3, 2)}
-#: Of the largest coefficient: by so much, a bound may be missed.
+#: Tolerance for a missed bound, relative to the largest coefficient.
 SLACK = 1e-7
 _ROUNDING = 1e-9  # of shape functions
 _MOST_PIECES = 400_000
@@ -49,7 +49,7 @@ class Factor:
 
 @dataclass(frozen=True)
 class Domain:
-    """The reference cell of a block of cells: the degrees of the map, and those of its determinant."""
+    """The reference cell of a block of cells: the degrees of the map, and of its determinant."""
 
     of_map: tuple[Factor, ...]
     factors: tuple[Factor, ...]
@@ -138,7 +138,7 @@ def _values(factor: Factor, at: Array) -> Array:
 
 
 def _slopes(factor: Factor, at: Array) -> list[Array]:
-    """Derivatives of the polynomials (columns) along each axis at points: differences of those of a lower degree."""
+    """Derivatives of the polynomials (columns) along each axis at points: differences of lower-degree polynomials."""
     rows = _exponents(factor.dimension, factor.degree)
     lower = Factor(factor.dimension, factor.degree - 1)
     values = _values(lower, at)
@@ -176,7 +176,7 @@ def _fit(factor: Factor) -> Array:
 
 @lru_cache(maxsize=None)
 def _children(factor: Factor) -> list[Array]:
-    """From the coefficients over a simplex to the ones over each part that it is divided into."""
+    """From the coefficients over a simplex to the coefficients over each part of its subdivision."""
     fit, at = _fit(factor), _samples(factor)
     parts = []
     for corners in _DIVISIONS[factor.dimension]:
@@ -185,7 +185,7 @@ def _children(factor: Factor) -> list[Array]:
     return parts
 
 
-#: Corners of the parts of a line, a triangle and a tetrahedron, by halves of edges. Of the tetrahedron: J. Bey,
+#: Corners of the parts of a line, a triangle and a tetrahedron, by halves of edges. For the tetrahedron: J. Bey,
 #: "Tetrahedral grid refinement", Computing 55 (1995).
 _O, _X, _Y, _Z = (0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)
 _XX, _YY, _ZZ, _XY, _XZ, _YZ = (2, 0, 0), (0, 2, 0), (0, 0, 2), (1, 1, 0), (1, 0, 1), (0, 1, 1)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Of domain(): arguments that are not one property each; and the function domains."""
+"""Arguments of domain() that are not one property each; and the function domains."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Of solve(), condition() and solver_study(): their results, and arguments that are not one property each."""
+"""The results of solve(), condition() and solver_study(), and their arguments that are not one property each."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from ._errors import Error, checked, wrong_usage
 from ._results import Result
 from ._tables import align
 
-_TABLE_2_5 = 16  # the first combinations of solver and preconditioner are those of the dissertation's Table 2.5
+_TABLE_2_5 = 16  # the first combinations of solver and preconditioner are in the dissertation's Table 2.5
 _FIXED, _SOURCE, _GIVEN, _INITIAL, _VELOCITY = 0, 1, 2, 5, 6  # input arrays of vtkEllipticSolver
 _CONSTANT, _ARRAY, _EXPRESSION = range(3)  # its types of functions
 _WHOLE, _PART, _CHOSEN = range(3)  # its fixed parts of the boundary
@@ -45,22 +45,22 @@ Function = Union[float, Values]
 
 @dataclass(frozen=True, repr=False, eq=False)
 class SolveResult(Result):
-    """The result of solve(). Of composite data, numbers are of all blocks; the reason is that of the last one.
+    """The result of solve(). For composite data, numbers cover all blocks; the reason is for the last block.
 
     Attributes
     ----------
     mesh : vtkDataObject
         The mesh with the solution on the points and, on the cells, `Gradient`, or `Stress` and `VonMises`.
     solution : Array
-        The solution per point, n; of elasticity the displacement, n x 3.
+        The solution per point, n; for elasticity the displacement, n x 3.
     gradient : Array
-        Per cell the gradient, m x 3; of elasticity the stress, m x 6 (xx yy zz xy yz xz). Empty if not computed.
+        Per cell the gradient, m x 3; for elasticity the stress, m x 6 (xx yy zz xy yz xz). Empty if not computed.
     times, series : Array | None
-        The times of the steps and the solution at each of them, (steps + 1) x n or n x 3; None of stationary problems,
-        and the solutions also unless asked for.
+        The times of the steps and the solution at each of them, (steps + 1) x n or n x 3; None for stationary problems;
+        the solutions also None unless requested.
     history : dict[str, Any]
-        With time steps, per step `time`, `iterations`, `residual`. Else per iteration (0 is the start) `residual`, the
-        norm that the method uses, and `log10_residual`, relative to the first one. Of composite data also `block`.
+        With time steps, per step `time`, `iterations`, `residual`. Otherwise per iteration (0 is the start) `residual`,
+        the norm that the method uses, and `log10_residual`, relative to the first one. For composite data also `block`.
     converged, reason, iterations : bool, str, int
         Whether the method converged, and the stopping criterion that ended it.
     unknowns : int
@@ -68,7 +68,7 @@ class SolveResult(Result):
     assembly_seconds, setup_seconds, solve_seconds : float
         Times of the assembly, of the set-up of the preconditioner or factorization, and of the solution.
     solution_error, gradient_error : float
-        With `exact`, the norms in L2 of the error and of its gradient; else nan.
+        With `exact`, the norms in L2 of the error and of its gradient; otherwise nan.
     summary : str
         The result in words.
     """
@@ -101,13 +101,13 @@ class ConditionResult(Result):
     mesh : vtkDataObject
         The mesh with the cell arrays `LargestEigenvalue`, `Excess` (its log10 over the geometric mean) and `Share`.
     condition, preconditioned_condition : float
-        Condition numbers of A and of P^-1 A, of composite data the largest; nan where they are unknown.
+        Condition numbers of A and of P^-1 A, for composite data the largest; nan where they are unknown.
     spectrum : list[dict[str, Any]]
         A row (dict) for A and one for P^-1 A: matrix, smallest, largest, condition, smallest_error, largest_error
-        (relative bounds; nan: unknown), converged, iterations, seconds, method, message; of composite data also block.
+        (relative bounds; nan: unknown), converged, iterations, seconds, method, message; for composite data also block.
     largest_eigenvalue, share : Array
         Per cell, m: the largest eigenvalue of its matrix, and its share of the largest eigenvalue of A; the shares add
-        up to 1. `share` is empty if not computed, for lack of time, too.
+        up to 1. `share` is empty if not computed, also for lack of time.
     unknowns : int
         Number of unknowns.
     summary : str
@@ -132,10 +132,10 @@ class SolverStudyResult(Result):
     Attributes
     ----------
     rows : list[dict[str, Any]]
-        A row (dict) per combination: name, number (1 to 16 are those of Table 2.5), seconds (total; nan if it failed),
+        A row (dict) per combination: name, number (1 to 16: Table 2.5), seconds (total; nan if it failed),
         result (the same as text; "*" if it failed, "-" if no time was left), setup_seconds, solve_seconds, cpu_seconds
-        (of the process for both), iterations, condition (of P^-1 A; nan: unknown), true_residual, converged, reason; of
-        composite data also block.
+        (of the process for both), iterations, condition (of P^-1 A; nan: unknown), true_residual, converged, reason;
+        for composite data also block.
     recommended, why : str
         The name of the recommended combination and the reason for it; "" if none converged or the times of the fastest
         do not differ by more than a tenth or a millisecond.
@@ -169,7 +169,7 @@ def set_fixed(filter_: Any, inputs: InputArrays, fixed: Values | None = None) ->
 
     fixed: the points with a given solution. None: the boundary. An expression: the points of the boundary where it
         holds, such as "x < 0.1". Name or values of a point or cell array: where it is not 0 (at the points of these
-        cells), and nowhere else.
+        cells), and only there.
     """
     if isinstance(fixed, str) and not has_array(inputs.mesh, fixed):
         filter_.SetFixedPart(_PART)
@@ -183,7 +183,7 @@ def set_fixed(filter_: Any, inputs: InputArrays, fixed: Values | None = None) ->
 def set_given(filter_: Any, inputs: InputArrays, given: Function = 0.0, *, pde: str) -> None:
     """Set the given solution.
 
-    given: the solution at the fixed points; as the source.
+    given: the solution at the fixed points; in the same form as the source.
     """
     _set_function(filter_, inputs, pde, "given", given, _GIVEN)
 
@@ -192,7 +192,7 @@ def set_given(filter_: Any, inputs: InputArrays, given: Function = 0.0, *, pde: 
 def set_initial(filter_: Any, inputs: InputArrays, initial: Function = 0.0, *, pde: str, time_scheme: str) -> None:
     """Set the solution at time 0.
 
-    initial: the solution at time 0; as the source.
+    initial: the solution at time 0; in the same form as the source.
     """
     if _is_transient(time_scheme):
         _set_function(filter_, inputs, pde, "initial", initial, _INITIAL)
@@ -202,7 +202,7 @@ def set_initial(filter_: Any, inputs: InputArrays, initial: Function = 0.0, *, p
 def set_velocity(filter_: Any, inputs: InputArrays, velocity: Function = 0.0, *, pde: str, time_scheme: str) -> None:
     """Set the time derivative at time 0.
 
-    velocity: the time derivative of the solution at time 0, of "newmark"; as the source.
+    velocity: the time derivative of the solution at time 0, of "newmark"; in the same form as the source.
     """
     if _is_transient(time_scheme):
         _set_function(filter_, inputs, pde, "velocity", velocity, _VELOCITY)
@@ -240,12 +240,12 @@ def _set_vector_function(filter_: Any, inputs: InputArrays, name: str, value: Fu
     if np.size(value) == 1 and np.all(np.asarray(value, float) == 0):
         value = (0.0, 0.0, 0.0)
     if np.size(value) not in (2, 3):
-        raise Error(f"{name} is {value!r}; of elasticity it is a vector of two or three numbers")
+        raise Error(f"{name} is {value!r}; for elasticity it is a vector of two or three numbers")
     getattr(filter_, _VECTOR_SETTERS[name])(*(number(name, v) for v in [*np.ravel(value), 0.0][:3]))
 
 
 def _check_function(name: str, value: Any) -> None:
-    """Raise Error for what is neither a text nor numbers."""
+    """Raise Error for a value that is neither a text nor numbers."""
     try:
         if isinstance(value, str) or np.asarray(value).dtype.kind in "iufb":
             return
@@ -267,7 +267,7 @@ def _set_variable_function(filter_: Any, inputs: InputArrays, name: str, value: 
 
 @checked
 def solver_combinations() -> dict[int, str]:
-    """The combinations of solver and preconditioner of solver_study() by number; 1 to 16 are those of Table 2.5.
+    """The combinations of solver and preconditioner of solver_study() by number; 1 to 16 are in Table 2.5.
 
     Returns
     -------
@@ -281,7 +281,7 @@ def solver_combinations() -> dict[int, str]:
 def choose_combinations(filter_: Any, combinations: Iterable[int | str] | None = None) -> None:
     """Choose the combinations.
 
-    combinations: numbers or names, see solver_combinations(). None: 1 to 16, those of the dissertation's Table 2.5.
+    combinations: numbers or names, see solver_combinations(). None: 1 to 16, from the dissertation's Table 2.5.
     """
     known = solver_combinations()
     for chosen in known if combinations is None else sequence("combinations", combinations):
@@ -296,7 +296,7 @@ def choose_combinations(filter_: Any, combinations: Iterable[int | str] | None =
 def solve_result(filter_: Any, output: vtkDataObject, series: bool = False) -> SolveResult:
     """The result of a filter that has run.
 
-    series: whether the result has the solution at all times; the mesh has that of the last one.
+    series: whether the result has the solution at all times; the mesh has the last one.
     """
     elastic = PDES[filter_.GetEquation()] == "elasticity"
     fields = "Stress" if elastic else "Gradient"
@@ -365,7 +365,7 @@ def solver_study_result(filter_: Any, _output: vtkDataObject) -> SolverStudyResu
 
 
 def _series(filter_: Any, name: str, times: Array) -> Array:
-    """The solution at all times; the output is then that of the last one."""
+    """The solution at all times; the filter's output is the last one afterwards."""
     found = []
     for step in times:
         filter_.UpdateTimeStep(float(step))

@@ -17,7 +17,7 @@ _ZERO = 1e-12  # relative size of the determinant of a flat element
 
 
 def simplices_of(mesh: Any) -> Array:
-    """The tetrahedra of a mesh, m x 4; where there are none the triangles, m x 3."""
+    """The tetrahedra of a mesh, m x 4; if there are none, the triangles, m x 3."""
     cells = cells_of(mesh)
     found = cells.get("tetrahedron", cells.get("triangle"))
     return np.zeros((0, 3), int) if found is None else np.asarray(found)
@@ -41,7 +41,7 @@ def interpolation_error(mesh: Any, values: Array) -> float:
     good = determinants > _ZERO**2 * longest**dimension
     cells, sides, gram = cells[good], sides[good], gram[good]
     volumes = np.sqrt(determinants[good]) / math.factorial(dimension)
-    scaled = np.linalg.solve(gram, sides)  # rows: what a difference along a side adds to the gradient
+    scaled = np.linalg.solve(gram, sides)  # rows: contribution of a difference along a side to the gradient
     total = 0.0
     for component in field.T:
         gradients = np.einsum("mk,mkx->mx", component[cells[:, 1:]] - component[cells[:, :1]], scaled)

@@ -18,7 +18,7 @@ from ._vtk import CLASSES
 _PREAMBLE = re.compile(r"^(ERROR|Warning): In .*?, line \d+\s*\n?\w+ \(.*?\): ", re.DOTALL)
 # Parts of the executive's message that follows the message of a filter.
 _CONSEQUENCE = ("returned failure for request", "Algorithm vtk")
-# Of its message where a reader has failed before it was asked for data; no help to a user.
+# Part of its message if a reader fails before data are requested; no help to a user.
 _INTERNAL = "No update piece number has been set"
 _NO_REASON = "a reader or filter of VTK failed without giving a reason: check that its file or input is complete"
 
@@ -33,14 +33,14 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 class Error(RuntimeError):
-    """Raised by every function of the package: wrong arguments, unreadable files, errors of a filter."""
+    """Raised by every function of the package for wrong arguments, unreadable files and errors of a filter."""
 
-    #: That of the shell.
+    #: Exit code on the shell.
     exit_code = 1
 
 
 class Aborted(Error):
-    """Raised where a progress callback has returned False."""
+    """Raised when a progress callback returns False."""
 
 
 class MissingKey(Error, KeyError):
@@ -53,7 +53,7 @@ class MissingKey(Error, KeyError):
         self._arguments = (what, key, names)
 
     def __str__(self) -> str:
-        return RuntimeError.__str__(self)  # that of KeyError has quotation marks
+        return RuntimeError.__str__(self)  # KeyError's own has quotation marks
 
     def __reduce__(self) -> Any:
         return type(self), self._arguments
@@ -64,13 +64,13 @@ Error.__module__ = Aborted.__module__ = MissingKey.__module__ = __package__
 
 
 def nearest(name: str, known: Iterable[str]) -> str:
-    """What to add to the message for an unknown name: the nearest one, or nothing."""
+    """The addition to the message for an unknown name: the nearest one, or nothing."""
     found = closest(name, known)
     return f"; did you mean {found!r}?" if found else ""
 
 
 def wrong_usage(text: str) -> Error:
-    """The error for a name that does not exist and for other wrong usage, by which the shell ends with 2."""
+    """The error for a name that does not exist and for other wrong usage, with which the shell exits with 2."""
     error = Error(text)
     error.exit_code = WRONG_USAGE
     return error
@@ -124,7 +124,7 @@ def _checked(function: Callable[..., Any], known: Signature) -> Callable[..., An
         try:
             return function(*arguments, **options)
         except ValueError as error:
-            if _RAGGED in str(error):  # of numpy, wherever an argument is seen as an array
+            if _RAGGED in str(error):  # of numpy, wherever an argument is converted to an array
                 raise Error(f"{function.__name__}(): an argument has rows of different lengths") from None
             raise
         except MemoryError:
@@ -175,7 +175,7 @@ def run(algorithm: Any, messages: Messages | None = None, without_reason: str = 
     except Cancelled:
         raise Aborted("cancelled") from None
     if failure:
-        raise Error(failure)  # VTK's own message comes with it, and says less
+        raise Error(failure)  # VTK's own message comes with it, and contains less
     messages.raise_errors(without_reason)
     return messages
 

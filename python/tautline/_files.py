@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Files that are replaced whole: after a failure there is the older file or the complete new one, never a part.
+"""Files that are replaced as a whole: after a failure there is the older file or the complete new one, never a part.
 
 A file is written under a temporary name with a random part, `.tautline-....part`, in the directory where it will be;
-that name is created anew and never followed if it is a link. Then the content is forced to the disk and the temporary
-file renamed. Programs that open files themselves (meshio) write into a directory of such a name. A process that is
-killed may leave the temporary file or directory behind, which can be deleted.
+that name is always a new file, and never followed if it is a link. Then the content is forced to the disk and the
+temporary file renamed. Programs that open files themselves (meshio) write into a directory of such a name. A process
+that is killed may leave the temporary file or directory behind, which can be deleted.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from ._errors import Error
 
 # Links in a row, as in Linux.
 _MAX_LINKS = 40
-# Names of open files, such as that of a pipe: `--csv /dev/stdout`.
+# Names of open files, such as a pipe: `--csv /dev/stdout`.
 _STREAMS = ("/dev/std", "/dev/fd/", "/proc/")
 _MEBIBYTE = 2**20
 _NEW_FILE = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW | os.O_CLOEXEC
@@ -41,7 +41,7 @@ def file_name(file: str | PathLike[str]) -> str:
 
 
 def check_input(file: str | PathLike[str]) -> None:
-    """Raise Error for what is no file, before a reader waits for it or reads from it for ever."""
+    """Raise Error if there is no regular file, before a reader blocks or reads from it forever."""
     name = file_name(file)
     try:
         mode = os.stat(name).st_mode
@@ -59,7 +59,7 @@ def check_target(file: str | PathLike[str]) -> str:
     """The name of the file that writing to `file` replaces. Raises Error if it cannot be written.
 
     A link is followed: the file it points to is replaced, and the link stays. A link of another user in a directory
-    where everybody may write, such as /tmp, is refused, as Linux does.
+    where everybody may write, such as /tmp, is rejected, as in Linux.
     """
     name = file_name(file)
     target = _follow(name)
@@ -175,13 +175,13 @@ def make_folder(folder: str | PathLike[str]) -> None:
 
 
 def temporary_name() -> str:
-    """A name for a new file or directory that nobody can guess."""
+    """An unpredictable name for a new file or directory."""
     return f".tautline-{token_hex(8)}.part"
 
 
 @contextmanager
 def locked(folder: str) -> Iterator[None]:
-    """Wait until no other process is in such a block for the same directory, where the file system has locks."""
+    """Wait until no other process is in such a block for the same directory, if the file system has locks."""
     descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
     try:
         with suppress(OSError):
@@ -192,7 +192,7 @@ def locked(folder: str) -> Iterator[None]:
 
 
 def sync_folder(folder: str) -> None:
-    """Force the names of the files in a directory to the disk, where the file system can."""
+    """Force the names of the files in a directory to the disk, if the file system can."""
     with suppress(OSError):
         descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
         try:
@@ -202,7 +202,7 @@ def sync_folder(folder: str) -> None:
 
 
 def _follow(name: str) -> str:
-    """The name behind all links, one after the other."""
+    """The name after all links are resolved, one after the other."""
     target = name
     for _ in range(_MAX_LINKS):
         if not os.path.islink(target):

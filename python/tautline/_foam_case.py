@@ -12,7 +12,7 @@ from ._errors import Error
 from ._files import replace_bytes, sync_folder, temporary_name
 
 FOAM = ".foam"
-#: What is copied: the mesh and its properties, the settings, the first time step, the processors.
+#: Copied folders: the mesh and its properties, the settings, the first time step, the processors.
 _PARTS = ("constant", "system", "0", "0.orig")
 _PROCESSORS = "processor[0-9]*"
 

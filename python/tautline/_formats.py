@@ -49,7 +49,7 @@ def _vtk_xml(data: str) -> Format:
 
 
 def _vtk_pieces(data: str) -> Format:
-    """Of a file that names the files of its pieces; written by ParaView."""
+    """The format of a file that names the files of its pieces; written by ParaView."""
     return Format(f"vtkXMLP{data.removeprefix('vtk')}Reader", None, data, "vtkIOXML")
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Whether a data set is a valid mesh, and an empty one that writers accept.
+"""Checks whether a data set is a valid mesh; empty meshes that writers accept.
 
 VTK's data sets hold whatever a reader or a script puts into them; filters and writers that trust them read beyond the
 end of arrays.
@@ -134,7 +134,7 @@ def writable(mesh: vtkDataSet) -> vtkDataSet:
     """The mesh, or, where it lacks the arrays of points or cells, a copy that has them, empty.
 
     vtkAppendFilter, vtkThreshold and others return grids without these arrays where nothing is left; VTK's writers
-    crash on them, or write files that its readers refuse.
+    crash on them, or write files that its readers reject.
     """
     bare_points = isinstance(mesh, vtkPointSet) and not mesh.GetPoints()
     bare_cells = isinstance(mesh, vtkUnstructuredGrid) and not (mesh.GetCells() and cell_types(mesh))
@@ -149,8 +149,8 @@ def writable(mesh: vtkDataSet) -> vtkDataSet:
     return made
 
 
-#: What VTK's legacy files have no section for: the name of the array, whether it belongs to the points, and the number
-#: of its attribute.
+#: Attributes without a section in VTK's legacy files: the name of the array, whether it belongs to the points, and the
+#: number of its attribute.
 _ATTRIBUTES = (("HigherOrderDegrees", False, vtkDataSetAttributes.HIGHERORDERDEGREES),
                ("RationalWeights", True, vtkDataSetAttributes.RATIONALWEIGHTS))  # fmt: skip
 
@@ -158,7 +158,7 @@ _ATTRIBUTES = (("HigherOrderDegrees", False, vtkDataSetAttributes.HIGHERORDERDEG
 def without_marks(mesh: vtkDataSet) -> vtkDataSet:
     """The mesh in which the orders and weights of Lagrange and Bezier cells are plain arrays of these names.
 
-    The legacy writer of VTK leaves them out else.
+    VTK's legacy writer drops them otherwise.
     """
     made = mesh.NewInstance()
     made.ShallowCopy(mesh)

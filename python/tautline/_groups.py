@@ -17,12 +17,12 @@ from ._errors import Error
 Groups = Mapping[str, Any]
 
 _LINE = 8  # numbers in a line of an element set; Abaqus takes 16
-_NAME = re.compile(r"\W+", re.ASCII)  # what names of Abaqus do not have
+_NAME = re.compile(r"\W+", re.ASCII)  # characters that names of Abaqus do not have
 _LONGEST_NAME = 80  # of Abaqus and MED
 
 
 def masks(groups: Groups, cells: int) -> dict[str, Array]:
-    """Per group 1 for its cells, else 0. Raises Error for a wrong name or number."""
+    """Per group 1 for its cells, otherwise 0. Raises Error for a wrong name or number."""
     if not isinstance(groups, Mapping):
         raise Error(f"groups is {groups!r}; a dict of numbers of cells, or masks, by name is expected")
     return {_checked_name(name): _mask(name, members, cells) for name, members in groups.items()}
@@ -74,7 +74,7 @@ def with_groups(data: vtkDataObject, groups: Groups) -> vtkDataObject:
 
 
 def element_sets(groups: Mapping[str, Array]) -> str:
-    """The sets as Abaqus has them, of cells numbered from 1; a set without cells is left out."""
+    """The sets in Abaqus's form, with cells numbered from 1; a set without cells is left out."""
     parts = []
     for name, mask in groups.items():
         numbers = [str(i) for i in np.flatnonzero(mask) + 1]
@@ -94,13 +94,13 @@ def families(groups: Mapping[str, Array], cells: int) -> tuple[Array, dict[int, 
     names: dict[int, list[str]] = {}
     for i, column in enumerate(combinations.T):
         if column.any():
-            numbers[i] = -len(names) - 1  # those of cells are below 0
+            numbers[i] = -len(names) - 1  # families of cells are below 0
             names[int(numbers[i])] = [name for name, member in zip(groups, column) if member]
     return numbers[of_cell.ravel()], names
 
 
 def members_of(tags: Array, names: Mapping[int, list[str]]) -> dict[str, Array]:
-    """families() the other way round: per group 1 for its cells, else 0."""
+    """The inverse of families(): per group 1 for its cells, otherwise 0."""
     found: dict[str, Array] = {}
     for number, groups in names.items():
         for group in groups:

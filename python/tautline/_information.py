@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The command info: what a mesh has, in ten lines."""
+"""The command info: the contents of a mesh in ten lines."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ def _pieces(part: vtkDataSet) -> int:
 
 
 def _regions(parts: list[vtkDataSet]) -> dict[str, list[int]]:
-    """The values of the cell arrays of whole numbers whose names are those of regions, materials, ..."""
+    """The values of the integer cell arrays that are named like regions, materials, ..."""
     found: dict[str, set[int]] = {}
     for part in parts:
         for name, values in cell_data_of(part).items():
@@ -137,8 +137,8 @@ def text_of(file: str, facts: dict[str, Any]) -> str:
 def add_commands(commands: Any) -> None:
     """Add `info` to the subparsers of the command line."""
     parser = _commands.add_command(
-        commands, "info", _run, "show what a mesh has: counts, types, bounds, regions, arrays, quality", threads=False,
-        example="part.vtu", details="Several files are shown one after the other.",
+        commands, "info", _run, "show the contents of a mesh: counts, types, bounds, regions, arrays, quality",
+        threads=False, example="part.vtu", details="Several files are shown one after the other.",
     )  # fmt: skip
     _commands.add_mesh(parser)
     _commands.take_more(parser)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Ctrl-C and progress callbacks: how they end what the compiled filters compute.
+"""Ctrl-C and progress callbacks: how they end the computation of the compiled filters.
 
 A filter runs inside updating(): there Ctrl-C, and a progress callback that returns False, end it within a moment. The
 lowest of the shared files: it uses the compiled classes only.
@@ -21,7 +21,7 @@ from ._vtk import CLASSES
 Progress = Callable[[float, str], Optional[bool]]
 
 _SECONDS_BETWEEN_CALLS = 0.1
-_SECONDS_BEFORE_BAR = 0.3  # what takes less has none
+_SECONDS_BEFORE_BAR = 0.3  # shorter operations have no bar
 _BAR_WIDTH, _TEXT_WIDTH = 30, 40
 _ERASE_LINE = "\r\x1b[K"
 _progress: ContextVar[Progress | None] = ContextVar("tautline_progress", default=None)
@@ -32,7 +32,7 @@ class Cancelled(Exception):
 
 
 class ProgressBar:
-    """A progress callback that draws a bar in the last line of a terminal, and nothing where there is none."""
+    """A progress callback that draws a bar in the last line of a terminal, and nothing without a terminal."""
 
     def __init__(self, stream: TextIO | None = None) -> None:
         self.stream = stream or sys.stderr
@@ -63,7 +63,7 @@ class ProgressBar:
 def reporting(progress: Progress | bool | None) -> Iterator[None]:
     """Report the progress of the filters that run in the block, True by a bar on a terminal.
 
-    None, False and, if there is one, True keep the callback of the block around.
+    None and False keep the callback of the enclosing block; so does True, if there is one.
     """
     if progress is None or progress is False or (progress is True and _progress.get()):
         yield
@@ -77,7 +77,7 @@ def reporting(progress: Progress | bool | None) -> Iterator[None]:
 
 @contextmanager
 def part(begin: float, end: float) -> Iterator[None]:
-    """A block whose progress, 0 to 1, is reported as that from `begin` to `end` by the callback of the block around."""
+    """A block whose progress, 0 to 1, the callback of the enclosing block gets as `begin` to `end`."""
     outer = _progress.get()
     if outer is None:
         yield
@@ -96,8 +96,8 @@ def part(begin: float, end: float) -> Iterator[None]:
 def updating(algorithm: Any) -> Iterator[None]:
     """A block in which Ctrl-C and the progress callback end the execution of a VTK algorithm.
 
-    At its end it raises KeyboardInterrupt after Ctrl-C, Cancelled if the callback has returned False, and what the
-    callback has raised. Handlers of SIGINT that are not Python's own are called instead.
+    At its end it raises KeyboardInterrupt after Ctrl-C, Cancelled if the callback has returned False, and any exception
+    of the callback. Handlers of SIGINT that are not Python's own are called instead.
     """
     interruption = CLASSES["vtkInterruption"]
     report = _Report(algorithm, _progress.get())
@@ -122,7 +122,7 @@ def _raise_interrupt() -> None:
     handler = signal.getsignal(signal.SIGINT)
     if callable(handler) and handler is not signal.default_int_handler:
         handler(signal.SIGINT, sys._getframe())
-        raise Cancelled  # what the filter has is no result
+        raise Cancelled  # the filter's output is not a result
     raise KeyboardInterrupt
 
 

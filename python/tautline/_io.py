@@ -54,8 +54,8 @@ from ._vtk_readers import (
 )
 from ._vtk_writers import block_files, write_composite, write_data
 
-#: What every function takes as a mesh: a vtkDataSet, a composite data set, a file name, the result of another function,
-#: (points, cells), see from_arrays(), a mesh of meshio, or one of PyVista, which is a vtkDataSet.
+#: Types that every function accepts as a mesh: a vtkDataSet, a composite data set, a file name, the result of another
+#: function, (points, cells), see from_arrays(), a mesh of meshio, or one of PyVista, which is a vtkDataSet.
 Mesh = Union[vtkDataObject, str, PathLike[str], "tuple[Any, Any]", Any]
 
 # VTK 9.1 and 9.2 with the expat of today's Debian 12 (VTK issue 19258).
@@ -66,9 +66,9 @@ _APPENDED = (
 # Files that name other files: of the pieces of one mesh, and of blocks.
 _IN_PIECES = (".pvtu", ".pvtp")
 _REFERRING = (".vtm", *_IN_PIECES)
-# Of a compressed file: its text, its bytes, what they expand to, the mesh and the buffers of the reader.
+# Multiple of a compressed file's size: text, bytes, expanded bytes, the mesh and the buffers of the reader.
 _MEMORY_PER_BYTE = 8
-#: What converts formats that nothing here reads.
+#: How to convert formats that nothing here reads.
 _CONVERTERS = {
     ".h5": "of Fluent, save the case in the legacy format, .cas: in its console, file/cff-files? no",
     ".step": "it is a geometry without a mesh: mesh it with Gmsh",
@@ -98,9 +98,9 @@ _VTK_TEMPLATES = (".vtk", ".vtu")
 # Formats with cells that are only read on demand, and with more than a mesh.
 _WITH_LOWER_CELLS = (".msh", ".mesh", ".meshb", ".su2", ".unv", ".inp", ".bdf", ".nas", ".fem")
 _MODELS = (".unv", ".inp", ".bdf", ".nas", ".fem")
-# Of the extent of a mesh: coordinates that are rounded by more are worth a warning.
+# Relative to the extent of a mesh: a larger rounding of coordinates causes a warning.
 _ROUNDING = 1e-9
-# Of one file; a damaged one may have thousands.
+# For one file; a damaged one may have thousands.
 _MOST_MESSAGES = 5
 
 
@@ -142,19 +142,20 @@ def read(
         TetGen and Triangle (.node .ele .face .edge .poly .smesh), Medit (.mesh .meshb .sol), Gmsh and FreeFem++ (.msh),
         OFF (.off .coff .noff .cnoff), Abaqus and CalculiX (.inp), Nastran (.bdf .nas .fem), the mesh of an OpenFOAM
         case (.foam, a file in its directory, which may be empty), the mesh of Fluent (.cas, and .msh that begin with a
-        parenthesis), without results. Of solvers: SU2, universal files (.unv), Exodus (.e .exo .ex2), CGNS, XDMF (.xmf
-        .xdmf), AVS UCD (.avs .ucd .inp), EnSight (.case), Gambit (.neu), Tecplot (.tec); .pvd; and where meshio is
-        installed MED, Netgen (.vol) and others, see formats(). Formats of one file also with .gz behind their ending.
+        parenthesis), without results. Formats of solvers: SU2, universal files (.unv), Exodus (.e .exo .ex2), CGNS,
+        XDMF (.xmf .xdmf), AVS UCD (.avs .ucd .inp), EnSight (.case), Gambit (.neu), Tecplot (.tec); .pvd; and where
+        meshio is installed MED, Netgen (.vol) and others, see formats(). Single-file formats also with .gz behind
+        their ending.
     **options
-        lower_cells (False): also read boundary triangles beside tetrahedra, and edges beside triangles; of the formats
-        of mesh generators, Abaqus, Nastran, SU2 and .unv; of OpenFOAM and Fluent the faces of the patches, by default
-        True. region (""), of OpenFOAM: the mesh in constant/region. decomposed, of OpenFOAM: True reads the meshes of
-        the processors, put together, False the one in constant; the default is the latter if it is there. time: the
-        time step to read, the nearest to this number, see times(); the default is the first. Of the formats of solvers
-        and .pvd.
+        lower_cells (False): also read boundary triangles beside tetrahedra, and edges beside triangles; for the formats
+        of mesh generators, Abaqus, Nastran, SU2 and .unv; for OpenFOAM and Fluent the faces of the patches, by default
+        True. region (""), for OpenFOAM: the mesh in constant/region. decomposed, for OpenFOAM: True merges the meshes
+        of the processors, False reads the one in constant; the default is the latter if it is there. time: the
+        time step to read, the nearest to this number, see times(); the default is the first. For the formats of
+        solvers and .pvd.
     progress : bool or callable, optional
-        True: a bar on the terminal, if there is one. Else a function, called ten times a second with the fraction done,
-        0 to 1, and a text; it cancels by returning False, which raises Aborted. Ctrl-C raises KeyboardInterrupt.
+        True: a bar on the terminal, if there is one. Otherwise a function, called ten times a second with the fraction
+        done, 0 to 1, and a text; it cancels by returning False, which raises Aborted. Ctrl-C raises KeyboardInterrupt.
 
     Returns
     -------
@@ -167,8 +168,8 @@ def read(
     Raises
     ------
     Error
-        With file and line where they are known, if the file cannot be read, is truncated or damaged. Only a .vtk file
-        that ends between two sections, or inside the last number of one, cannot be told from a complete file.
+        If the file cannot be read, is truncated or damaged; with file and line where they are known. Only a .vtk file
+        that ends between two sections, or inside the last number of one, cannot be distinguished from a complete file.
 
     Examples
     --------
@@ -235,12 +236,12 @@ def _read(name: str, options: dict[str, Any]) -> vtkDataObject:
 
 
 def _is_fluent(name: str) -> bool:
-    """Whether a file is of Fluent, also a .msh, which is of Gmsh as well."""
+    """Whether a file is in Fluent's format, including .msh files, which can be Gmsh's instead."""
     return bool(CLASSES[FLUENT_READER]().CanReadFile(name)) if FLUENT_READER in CLASSES else False
 
 
 def _may_crash(name: str, ending: str) -> bool:
-    """Whether a reader of VTK trusts what is in the file: lists of vertices, the faces of polyhedra."""
+    """Whether a reader of VTK trusts the file's contents: lists of vertices, the faces of polyhedra."""
     if ending == ".vtu":
         return b'Name="faces"' in Path(name).read_bytes()
     return ending in _UNSAFE
@@ -264,7 +265,7 @@ def _times(name: str) -> list[float]:
 
 
 def _read_other(name: str, ending: str, options: dict[str, Any], time: float | None) -> vtkDataObject:
-    """Read a file of a solver with a reader of VTK, else with meshio."""
+    """Read a file of a solver with a reader of VTK, otherwise with meshio."""
     if ending not in readable():
         raise Error(f"{name}: no reader for '{ending}'{_tool(ending)}; there are {' '.join(readable())}")
     _check_options(name, ending, options, *(["lower_cells"] if ending in (SU2, UNV) else []))
@@ -289,7 +290,7 @@ def _read_other(name: str, ending: str, options: dict[str, Any], time: float | N
 
 
 def _read_with(name: str, form: SolverFormat, time: float | None) -> vtkDataObject:
-    """Read a file with a reader of VTK, of which every message is an error."""
+    """Read a file with a reader of VTK; each of its messages is an error."""
     with _CapturedOutput() as captured:
         try:
             mesh = read_solver(name, form, time)
@@ -308,7 +309,7 @@ def readable() -> list[str]:
 
 
 def _tool(ending: str) -> str:
-    """What converts files that nothing here reads."""
+    """How to convert files that nothing here reads."""
     return f": {_CONVERTERS[ending]}" if ending in _CONVERTERS else ""
 
 
@@ -319,7 +320,7 @@ def times(file: str | PathLike[str]) -> list[float]:
     Parameters
     ----------
     file : str or path
-        The file; of other formats there are none.
+        The file; other formats have no time steps.
 
     Returns
     -------
@@ -367,21 +368,20 @@ def write(
         They are element sets in Abaqus's .inp and groups in Salome's .med, in other files cell arrays of 0 and 1.
     template : str, path or bool, optional
         The file that the mesh was read from, of the same format. The output is a copy of it in which only the
-        coordinates are those of the mesh: markers, sets, materials, types of elements, comments and the format of the
+        coordinates change: markers, sets, materials, types of elements, comments and the format of the
         numbers stay. The mesh must have the cells of that file, in its order, as after untangle(), optimize(), warp()
         and perturb(); its arrays are not written. For .msh, .mesh, .meshb, .su2, .inp, .bdf .nas .fem, .unv, .off, .vtk
         and .vtu; Salome's .med, CGNS, Exodus and MOAB's .h5m, where h5py is installed (Exodus also without it, unless
         it is in HDF5); .foam: the points of the case, or of a copy of it if the file is in another directory, which
-        must be empty. The default, for
-        the results of these functions: the file that the mesh was read from if it is of the same format, except VTK's.
-        False: none; the mesh is written with its arrays.
+        must be empty. The default, for the results of these functions: the file that the mesh was read from if it is
+        of the same format, except VTK's. False: none; the mesh is written with its arrays.
     **options
-        binary (False): write .msh as bytes. Not for formats of VTK. mfem: "H1" or "L2" write .mesh for MFEM, with nodes
+        binary (False): write .msh as bytes. Not for VTK's formats. mfem: "H1" or "L2" write .mesh for MFEM, with nodes
         that neighbors share, or with nodes of each element; the default is Medit's .mesh, which has no curved cells.
-        keep_original (False), of .foam: keep the file of points that is replaced as points.orig, unless there is one.
+        keep_original (False), for .foam: keep the replaced file of points as points.orig, unless there is one.
     progress : bool or callable, optional
-        True: a bar on the terminal, if there is one. Else a function, called ten times a second with the fraction done,
-        0 to 1, and a text; it cancels by returning False, which raises Aborted. Ctrl-C raises KeyboardInterrupt.
+        True: a bar on the terminal, if there is one. Otherwise a function, called ten times a second with the fraction
+        done, 0 to 1, and a text; it cancels by returning False, which raises Aborted. Ctrl-C raises KeyboardInterrupt.
 
     Returns
     -------
@@ -415,9 +415,9 @@ def write(
         except Error as error:
             try:
                 check_output(name)
-            except Error:  # there is no writer, only a copy
+            except Error:  # there is no writer, only a copy is possible
                 raise error from None
-            warnings.warn(f"{error}; {name} is written anew", stacklevel=4)
+            warnings.warn(f"{error}; {name} is written without it", stacklevel=4)
     if form is None:
         _check_options(name, ending, options)
         one = as_data_set(mesh)
@@ -466,7 +466,7 @@ def _warn_of_rounding(name: str, rounding: float, meshes: list[vtkDataSet]) -> N
 
 
 def _source_for(mesh: Mesh, name: str) -> str:
-    """The file whose points a result has moved, if it can be the template; else ""."""
+    """The file whose points a result has moved, if it can be the template; otherwise ""."""
     inner = getattr(mesh, "mesh", None)
     source = source_of(inner) if inner is not None and hasattr(mesh, "displacement") else ""
     known = source and os.path.isfile(source) and can_be_template(source, name)
@@ -491,7 +491,7 @@ def can_be_template(source: str, target: str) -> bool:
 
 
 def losses(source: str) -> str:
-    """What a file holds beside the mesh that is read from it, in words; "" if nothing."""
+    """The contents of a file beside the mesh that is read from it, in words; "" if nothing."""
     ending = Path(source).suffix.lower()
     found = []
     if ending in _WITH_LOWER_CELLS:
@@ -626,7 +626,7 @@ def _holds(form: Format, data: vtkDataObject) -> bool:
 
 
 def _read_vtk(name: str, form: Format) -> vtkDataObject:
-    """Read a file with a reader of VTK, of which every message is an error: it returns what it has all the same."""
+    """Read a file with a reader of VTK; every message is an error, although the reader returns a partial mesh."""
     if os.path.getsize(name) == 0:
         raise Error(f"{name}: the file is empty")
     require_memory(_MEMORY_PER_BYTE * os.path.getsize(name), f"reading {name}")
@@ -662,11 +662,11 @@ def _read_vtk(name: str, form: Format) -> vtkDataObject:
 
 
 def _remove_ghosts(mesh: vtkDataSet) -> None:
-    """Remove the ghost cells of a vtkUnstructuredGrid or vtkPolyData, which are in another piece, too."""
+    """Remove the ghost cells of a vtkUnstructuredGrid or vtkPolyData, which are also in another piece."""
     if not mesh.HasAnyGhostCells():
         return
     mesh.RemoveGhostCells()
-    if mesh.IsA("vtkUnstructuredGrid"):  # VTK leaves an entry too many
+    if mesh.IsA("vtkUnstructuredGrid"):  # VTK leaves one extra entry
         cells = mesh.GetCells()
         last = int(cells.GetOffsetsArray().GetTuple1(cells.GetNumberOfCells()))
         cells.GetConnectivityArray().SetNumberOfTuples(last)
@@ -721,7 +721,7 @@ class _CapturedOutput:
 
     def texts(self) -> list[str]:
         output = self.window.GetOutput() or ""
-        if isinstance(output, bytes):  # quotes from a file that is no text
+        if isinstance(output, bytes):  # quotes from a binary file
             output = output.decode(errors="backslashreplace")
         return [plain(text) for text in output.split("\n\n") if text.strip()]
 

@@ -27,7 +27,7 @@ _BYTES = {
     "unsigned_long": 8, "long": 8, "float": 4, "double": 8, "vtkidtype": 4, "vtktypeint64": 8, "vtktypeuint64": 8,
 }  # fmt: skip
 _TEXTS = ("string", "utf8_string")
-# A text starts with the number of its bytes; the first two bits give the size of that number.
+# A text starts with the number of its bytes; its first two bits give the size of this number.
 _LENGTH_BYTES = (8, 4, 2, 1)
 _BITS_IN_BYTE = 8
 _CHUNK = 1 << 20
@@ -90,7 +90,7 @@ class _Scanner:
         self.at = found.end()
 
     def _section(self, word: str) -> bool:
-        """Pass a section, of which the first word was read; False where data starts that are not a mesh."""
+        """Skip a section whose first word was read; False if data starts that are not a mesh."""
         if word == "dataset":
             kind = self._word()
             if kind not in _MESHES + _BLOCKS:
@@ -165,7 +165,7 @@ class _Scanner:
             left -= 1
 
     def _metadata(self) -> None:
-        """Facts on an array, to the next empty line."""
+        """Metadata of an array, up to the next empty line."""
         self._rest_of_line()
         while self._rest_of_line().strip():
             pass
@@ -183,7 +183,7 @@ class _Scanner:
             self.open -= 1
 
     def _values(self, count: int, kind: str) -> None:
-        """Pass values. Raises Error if the file has not as many."""
+        """Skip values. Raises Error if the file has fewer."""
         if kind not in _BYTES and kind not in _TEXTS and kind != "bit":
             raise self._damaged(f"unknown type '{kind[:20]}'")
         if kind in _TEXTS:
@@ -199,7 +199,7 @@ class _Scanner:
             self._bytes((bits + _BITS_IN_BYTE - 1) // _BITS_IN_BYTE)
 
     def _bytes(self, count: int) -> bytes:
-        """The start of bytes that are passed."""
+        """The start of bytes that are skipped."""
         if count > self.size - self.at:
             raise self._damaged(f"{count} bytes are announced, {self.size - self.at} are there")
         start = self.at
@@ -218,7 +218,7 @@ class _Scanner:
         self._rest_of_line()
 
     def _text_values(self, count: int) -> None:
-        """Pass numbers as text, in chunks that end between two of them."""
+        """Skip numbers as text, in chunks that end between two of them."""
         left = count
         while left:
             chunk = self.content[self.at : self.at + _CHUNK]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Of triangle_mesh() and tet_mesh(): their result and their inputs."""
+"""The result and the inputs of triangle_mesh() and tet_mesh()."""
 
 from __future__ import annotations
 
@@ -42,8 +42,8 @@ def triangle_mesh_input(filter_: Any, outline: Mesh, sizes: Values | None = None
     """Set the outlines and the sizes.
 
     outline: lines, polylines or polygons in a plane z = constant: a vtkDataSet, a file name (such as .poly), the result
-        of another function, or (points, cells). Their edges are kept, and subdivided where it is needed. What an odd
-        number of outlines surrounds is filled, unless the field array `Holes` marks what is not.
+        of another function, or (points, cells). Their edges are kept, and subdivided where needed. Areas surrounded by
+        an odd number of outlines are filled, unless the field array `Holes` marks the holes.
     sizes: longest edge at each point of the outline: one number per point, or the name of a point array.
     """
     _set_boundary(filter_, outline, sizes)
@@ -54,7 +54,7 @@ def tet_mesh_input(filter_: Any, surface: Mesh, sizes: Values | None = None) -> 
 
     surface: triangles, quadrilaterals and polygons that share their points and close one or more volumes: a vtkDataSet,
         a file name (such as .smesh, .poly or .stl), the result of another function, or (points, cells). Inner surfaces
-        part the volume. Field arrays `Holes`, `Regions` and `FacetHoles` as those of TetGen's files.
+        divide the volume. The field arrays `Holes`, `Regions` and `FacetHoles` work as in TetGen's files.
     sizes: longest edge at each point of the surface: one number per point, or the name of a point array.
     """
     _set_boundary(filter_, surface, sizes)
@@ -79,7 +79,7 @@ def tet_mesh_result(filter_: Any, mesh: vtkUnstructuredGrid) -> MeshResult:
 
 def _result(filter_: Any, mesh: vtkUnstructuredGrid, cells: str) -> MeshResult:
     given, made = filter_.GetInputDataObject(0, 0).GetNumberOfPoints(), mesh.GetNumberOfPoints()
-    summary = f"{mesh.GetNumberOfCells()} {cells} on {made} points, {given} of them those of the boundary."
+    summary = f"{mesh.GetNumberOfCells()} {cells} on {made} points, {given} of them from the boundary."
     return MeshResult(mesh=mesh, boundary=filter_.GetOutputDataObject(1), summary=summary)
 
 

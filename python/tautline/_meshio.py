@@ -25,17 +25,17 @@ from ._files import replacing_by_name
 from ._grid_checks import check_block
 from ._groups import Groups, element_sets, families, masks, members_of, with_groups
 
-#: VTK's number and the number of points of meshio's cells, in the same order of points but for _ORDERS.
+#: VTK's number and the number of points of meshio's cells, in the same order of points, except _ORDERS.
 _CELLS = {
     "vertex": (1, 1), "line": (3, 2), "triangle": (5, 3), "quad": (9, 4), "tetra": (10, 4), "hexahedron": (12, 8),
     "wedge": (13, 6), "pyramid": (14, 5), "line3": (21, 3), "triangle6": (22, 6), "quad8": (23, 8), "tetra10": (24, 10),
     "hexahedron20": (25, 20), "wedge15": (26, 15), "pyramid13": (27, 13), "quad9": (28, 9), "hexahedron27": (29, 27),
     "triangle7": (34, 7),
 }  # fmt: skip
-#: meshio's wedges are those of Gmsh: the normal of their first triangle points inwards. Their own inverses.
+#: meshio's wedges are like Gmsh's: the normal of their first triangle points inward. Their own inverses.
 _ORDERS = {"wedge": [0, 2, 1, 3, 5, 4], "wedge15": [0, 2, 1, 3, 5, 4, 8, 7, 6, 11, 10, 9, 12, 14, 13]}
 _BY_NUMBER = {number: (name, size) for name, (number, size) in _CELLS.items()}
-#: Formats that meshio reads and VTK or Tautline do not, by ending: what they are.
+#: Formats that meshio reads and VTK or Tautline do not: descriptions by ending.
 MESHIO_FORMATS = {
     ".inp": "Abaqus",
     ".med": "Salome MED",
@@ -54,7 +54,7 @@ _KRATOS_CELLS = {
     (2, 9): "quad9", (3, 4): "tetra", (3, 5): "pyramid", (3, 6): "wedge", (3, 8): "hexahedron", (3, 10): "tetra10",
     (3, 15): "wedge15", (3, 20): "hexahedron20", (3, 27): "hexahedron27",
 }  # fmt: skip
-#: Formats as text without counts, of which a cut line can be read as a whole one.
+#: Text formats without counts, where a truncated line can be read as a whole one.
 _LINES_ONLY = (".f3grid",)
 #: Formats with one label for each cell, and the cell arrays it is taken from.
 _ONE_LABEL = (".ugrid",)
@@ -65,7 +65,7 @@ PACKAGE = "meshio (Debian: apt-get install python3-meshio)"
 _MOAB = ".h5m"
 _HDF5_FORMATS = (".med", _MOAB)
 _HDF5_PACKAGE = "h5py (Debian: apt-get install python3-h5py)"
-#: The cells of formats that do not have all of meshio's.
+#: The cells of formats that do not support all of meshio's.
 _ONLY_CELLS = {
     ".f3grid": ("FLAC3D", {"tetra", "pyramid", "wedge", "hexahedron", "triangle", "quad"}, 3),
     ".xml": ("DOLFIN", {"triangle", "tetra"}, 2),
@@ -77,7 +77,7 @@ _ONLY_CELLS = {
 
 
 def installed(ending: str = "") -> bool:
-    """Whether meshio can be imported, and what it needs for the format."""
+    """Whether meshio and its dependencies for the format can be imported."""
     return find_spec("meshio") is not None and (ending not in _HDF5_FORMATS or find_spec("h5py") is not None)
 
 
@@ -85,19 +85,19 @@ def check_installed(name: str) -> None:
     """Raise Error, with the names of the packages, if meshio or what it needs for the format is not installed."""
     ending = name[name.rfind(".") :].lower()
     if find_spec("meshio") is None:
-        raise Error(f"{name}: this format is that of {PACKAGE}, which is not installed")
+        raise Error(f"{name}: this format needs {PACKAGE}, which is not installed")
     if not installed(ending):
         raise Error(f"{name}: meshio needs {_HDF5_PACKAGE} for '{ending}', which is not installed")
 
 
 def is_meshio(mesh: Any) -> bool:
-    """Whether an object is a mesh of meshio, which is not imported for that."""
+    """Whether an object is a mesh of meshio, without importing it."""
     module = sys.modules.get("meshio")
     return module is not None and isinstance(mesh, module.Mesh)
 
 
 def read_meshio(name: str) -> vtkUnstructuredGrid:
-    """Read a file. Raises Error if meshio is not installed or cannot read it; what it prints becomes a warning."""
+    """Read a file. Raises Error if meshio is not installed or cannot read it; its printed messages become warnings."""
     meshio = _module(name)
     if name.lower().endswith(_LINES_ONLY):
         with open(name, "rb") as file:
@@ -114,10 +114,10 @@ def read_meshio(name: str) -> vtkUnstructuredGrid:
 
 
 def _name_kratos_elements(name: str) -> None:
-    """Tell meshio the cells of the elements of Kratos in a file: by their nodes it takes Element2D3N for a line.
+    """Register the cells of the Kratos elements of a file with meshio, which reads Element2D3N as a line.
 
     Raises Error, with the line, for elements whose name does not give their cell, and for nodes that are not numbered
-    from 1 on, because meshio takes their numbers for places.
+    from 1 on, because meshio uses their numbers as positions.
     """
     known = import_module("meshio.mdpa._mdpa")._mdpa_to_meshio_type
     nodes = None
@@ -151,7 +151,7 @@ def _kratos_cell(place: str, boundary: bool, entity: str) -> str:
 def write_meshio(data: vtkDataSet, name: str, groups: Groups | None = None) -> list[str]:
     """Write a file. Raises Error if meshio is not installed or cannot write it.
 
-    Groups are element sets in .inp and groups in .med, else arrays of 0 and 1.
+    Groups are element sets in .inp and groups in .med, otherwise arrays of 0 and 1.
     """
     meshio = _module(name)
     ending = name[name.rfind(".") :].lower()
@@ -193,7 +193,7 @@ def _check_cells(name: str, ending: str, mesh: Any) -> None:
 
 
 def _labeled(mesh: Any) -> Any:
-    """The mesh with no other cell data than labels, of which meshio would pick some integer array."""
+    """The mesh with only the labels as cell data; meshio would otherwise pick some integer array."""
     names = [name for name in _LABELS if name in mesh.cell_data]
     labels = {"Reference": [np.asarray(part).astype(np.int64) for part in mesh.cell_data[names[0]]]} if names else {}
     return type(mesh)(mesh.points, [(block.type, block.data) for block in mesh.cells], cell_data=labels)
@@ -224,7 +224,7 @@ def _by_type(mesh: Any, more: dict[str, Array]) -> Any:
 def _quietly(name: str, verb: str, action: Callable[[], Any], temporary: str = "") -> Any:
     """The result of an action of meshio, which prints messages and exits the program after some errors.
 
-    temporary: the name of the file in these messages, where it is another one than `name`.
+    temporary: the name of the file in these messages, if it differs from `name`.
     """
     said = io.StringIO()
     try:
@@ -310,14 +310,14 @@ def _ordered(name: str, cells: Array) -> Array:
 
 
 def in_vtk_order(name: str, cells: Any) -> Any:
-    """The points of cells of meshio, by the name of the cell, in the order of VTK; what is no such array as it is."""
+    """The points of cells of meshio, by the name of the cell, in the order of VTK; other values are unchanged."""
     if name not in _ORDERS or np.ndim(cells) != 2 or np.shape(cells)[1] != len(_ORDERS[name]):
         return cells
     return _ordered(name, np.asarray(cells))
 
 
 def _membership(mesh: Any, chosen: Any) -> Array:
-    """Per cell 1 in a set of cells, else 0."""
+    """Per cell 1 in a set of cells, otherwise 0."""
     parts = []
     for block, members in zip(mesh.cells, chosen):
         part = np.zeros(len(block.data), np.uint8)

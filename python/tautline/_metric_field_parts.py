@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Of metric_field(): its result, and arguments that are not one property each."""
+"""The result of metric_field(), and its arguments that are not one property each."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from ._results import Result
 
 @dataclass(frozen=True, repr=False, eq=False)
 class MetricFieldResult(Result):
-    """The result of metric_field(). The arrays have the axes [z, y, x]; of a triangle [y, x].
+    """The result of metric_field(). The arrays have the axes [z, y, x]; for a triangle [y, x].
 
     Attributes
     ----------
@@ -52,7 +52,7 @@ def choose_metrics(filter_: Any, metrics: Metrics = ("imr",)) -> None:
 def set_vertices(filter_: Any, vertices: Sequence[Any] | None = None, *, cell: str) -> None:
     """Set the fixed vertices.
 
-    vertices: the fixed vertices: of a triangle 2 x 2 or 2 x 3 coordinates, of a tetrahedron 3 x 3. The default is the
+    vertices: the fixed vertices: for a triangle 2 x 2 or 2 x 3 coordinates, for a tetrahedron 3 x 3. The default is the
         base of the regular cell with edges of length 1, from the origin along x.
     """
     axes = _axes(cell)
@@ -71,8 +71,8 @@ def set_grid(
 ) -> None:
     """Set the grid.
 
-    bounds: range of the free vertex: xmin, xmax, ymin, ymax, and of a tetrahedron zmin, zmax.
-    dimensions: number of grid points along x, y, and of a tetrahedron z, each at least 1.
+    bounds: range of the free vertex: xmin, xmax, ymin, ymax, and for a tetrahedron zmin, zmax.
+    dimensions: number of grid points along x, y, and for a tetrahedron z, each at least 1.
     """
     axes = _axes(cell)
     box = _numbers("bounds", bounds, [(6,), (2 * axes,)])
@@ -118,7 +118,7 @@ def add_metric_field_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of these arguments."""
     _commands.add_metrics(parser)
     parser.add_argument("--vertices", type=_commands.numbers, nargs="+", metavar="X,Y[,Z]",
-                        help="the fixed vertices, 2 of a triangle, 3 of a tetrahedron")  # fmt: skip
+                        help="the fixed vertices, 2 for a triangle, 3 for a tetrahedron")  # fmt: skip
     parser.add_argument("--bounds", type=float, nargs=6, metavar="X",
                         help="range of the vertex: xmin xmax ymin ymax zmin zmax (default: -1 2 0 2 0 2)")  # fmt: skip
     parser.add_argument("--dimensions", type=int, nargs=3, metavar="N", help="grid points (default: 301 201 101)")

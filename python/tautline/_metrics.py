@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The functions metrics, register_metric, unregister_metric and load_metrics: all quality metrics and their facts."""
+"""The functions metrics, register_metric, unregister_metric and load_metrics: all quality metrics, with data."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def metrics() -> list[dict[str, Any]]:
     Returns
     -------
     list[dict[str, Any]]
-        A dict of facts for each, None where a fact does not apply: number (int); name (str, also the name of the cell
+        A dict of properties for each, None where one does not apply: number (int); name (str, also the name of the cell
         array); label, symbol, formula, source, unit (str); aliases (list of str); dimensions (list of 2 and 3);
         cell_types (list of str); full_2d, full_3d (range on valid elements, a tuple of two floats); acceptable_2d,
         acceptable_3d (range that most solvers accept); ideal_2d, ideal_3d (float); direction ("smaller is better",
@@ -109,15 +109,15 @@ def register_metric(
     scale_invariant: bool = False,
     rotation_invariant: bool = True,
 ) -> int:
-    """Register a metric of one's own, for measuring, coloring, statistics, criteria and optimization.
+    """Register a user-defined metric for measuring, coloring, statistics, criteria and optimization.
 
     The metric is then known by its name to quality, compare, metric_field, criteria and, in pvpython and in ParaView's
     Python shell, to the menus of filters that are made afterwards. As an objective of optimize it takes derivatives by
     central differences, 6 evaluations for each corner of an element, and moves all points together (L-BFGS or a
     conjugate gradient): tens of times slower than a metric that is registered in C++ (tautline/Quality/UserMetric.h),
-    and with a boundary that is fixed or slides on flat parts. A metric that was registered in Python under the same
-    name is replaced. With a server of ParaView, or several processes of pvbatch, it is registered in this process only:
-    put the registration into a file then, for load_metrics.
+    and only with a boundary that is fixed or slides on flat parts. A metric that was registered in Python under the
+    same name is replaced. With a server of ParaView, or several processes of pvbatch, it is registered in this process
+    only: put the registration into a file for load_metrics instead.
 
     Parameters
     ----------
@@ -125,8 +125,8 @@ def register_metric(
         Lower case letters, digits and underscores; the name of the cell array.
     function : MetricFunction
         Takes x y z of the corners, shape (cells, corners, 3), read-only, and the type of the cells, a name of
-        cell_types; returns a value per cell, shape (cells,). It is called once per cell type. A planar mesh is seen in
-        its plane (z is 0, valid cells counter-clockwise); what is not finite becomes 0.
+        cell_types; returns a value per cell, shape (cells,). It is called once per cell type. A planar mesh is given in
+        its plane (z is 0, valid cells counter-clockwise); values that are not finite become 0.
     label, symbol : str, default ""
         For menus; the default is the name.
     aliases : str, default ""
@@ -138,7 +138,7 @@ def register_metric(
     direction : str, default "smaller is better"
         "smaller is better", "larger is better" or "neutral".
     full, acceptable : tuple[float, float], default (0.0, float("inf"))
-        The ranges of valid cells, and of those that most solvers accept.
+        The ranges for valid cells, and for cells that most solvers accept.
     ideal : float, optional
         The value of the ideal cell.
     scale_invariant, rotation_invariant : bool, default False, bool, default True
@@ -191,7 +191,7 @@ def register_metric(
     if replaced is not None:
         replaced.RemoveFromRegistry(name)
     if not metric.AddToRegistry():
-        if replaced is not None:  # the metric that was there stays
+        if replaced is not None:  # the existing metric stays
             replaced.AddToRegistry()
             _REGISTERED[name] = replaced
         try:
@@ -204,7 +204,7 @@ def register_metric(
         warnings.warn(
             f"the metric {name} is registered in this process only, but the filters of ParaView are executed by the "
             f"server {server.GetURI()}, whose menus do not have it: put the registration into a file, and load it by "
-            "tautline.load_metrics(FILE), which registers it in all processes of the server, too",
+            "tautline.load_metrics(FILE), which also registers it in all processes of the server",
             stacklevel=3,
         )
     return next(int(facts["number"]) for facts in metrics() if facts["name"] == name)
@@ -288,9 +288,9 @@ def load_metrics(library: str | os.PathLike[str]) -> list[str]:
 
     Notes
     -----
-    In pvpython, pvbatch and ParaView's Python shell all processes of the server load it, too: a Python file as it is
-    here, a library from the path on the computer of the server. Filters that are made afterwards have the metrics in
-    their menus. The server needs the package tautline.
+    In pvpython, pvbatch and ParaView's Python shell, all processes of the server also load it: a Python file is sent
+    to them, a library is loaded from its path on the server's computer. Filters that are made
+    afterwards have the metrics in their menus. The server needs the package tautline.
     """
     if not isinstance(library, (str, os.PathLike)):
         raise Error(f"the library is {library!r}; a file name is expected")
@@ -312,16 +312,16 @@ def load_metrics(library: str | os.PathLike[str]) -> list[str]:
 
 
 def _known() -> dict[str, Any]:
-    """The names of all metrics, and what Python has registered of them."""
+    """The names of all metrics, and the metrics that Python has registered."""
     return {facts["name"]: _REGISTERED.get(facts["name"]) for facts in metrics()}
 
 
-#: Whether load_here() is at work: what it registers is registered on all processes.
+#: Whether load_here() is running: its metrics are registered on all processes.
 _loading = False
 
 
 def load_here(path: str, script: str | None) -> str:
-    """Load a library, or run the text of a Python file, in this process. Returns what is wrong, or ""."""
+    """Load a library, or run the text of a Python file, in this process. Returns the problem, or ""."""
     global _loading
     if script is None:
         return str(_vtk.vtkUserMetric.LoadLibrary(path))
@@ -336,7 +336,7 @@ def load_here(path: str, script: str | None) -> str:
 
 
 def _server() -> Any:
-    """The connection of ParaView, if its server has other processes than this one; else None."""
+    """The connection of ParaView, if its server has other processes than this one; otherwise None."""
     connection = getattr(sys.modules.get("paraview.servermanager"), "ActiveConnection", None)
     if connection is None:
         return None
@@ -347,7 +347,7 @@ def _server() -> Any:
     return connection if connection.IsRemote() or connection.GetNumberOfDataPartitions() > 1 else None
 
 
-#: Runs on each process of the server: a row with its number and what was wrong.
+#: Runs on each process of the server: a row with its number and the problem.
 _ON_SERVER = """
 from vtkmodules.vtkCommonCore import vtkIntArray, vtkStringArray
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
@@ -365,7 +365,7 @@ for array, value in ((vtkIntArray(), controller.GetLocalProcessId() if controlle
 
 
 def _load_on_server(server: Any, path: str, script: str | None) -> str:
-    """Load a file in all processes of the server. Returns what is wrong, or ""."""
+    """Load a file in all processes of the server. Returns the problem, or ""."""
     from paraview import servermanager
 
     source = servermanager.sources.ProgrammableSource()
@@ -384,7 +384,7 @@ def _load_on_server(server: Any, path: str, script: str | None) -> str:
 
 
 def find_metric(name: str, known: Iterable[str] | None = None) -> str | None:
-    """The one of the known metrics that a name, label, symbol or alias means, in any case; None if there is none.
+    """The known metric with a name, label, symbol or alias, case-insensitive; None if there is none.
 
     The default are all metrics.
     """
@@ -405,7 +405,7 @@ def _names_of(facts: dict[str, Any]) -> list[str]:
 
 
 def metric_name(name: Any, option: str = "a metric") -> str:
-    """The name of the metric that a name, label, symbol or alias means. Raises Error, with the nearest one, for others.
+    """The name of the metric with a name, label, symbol or alias. Raises Error, with the nearest one, for others.
 
     option: the argument, for the message.
     """

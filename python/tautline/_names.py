@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Names of methods and presets as users write them: in any case, and as ParaView's panels have them."""
+"""Names of methods and presets as users write them: case-insensitive, also with the labels of ParaView's panels."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any, Iterable
 
 from ._choices import LABELS
 
-# Names by older ones, and by labels of warp()'s solver, which is not one property. As in folded().
+# Names by older names, and by labels of warp()'s solver, which is not one property. As in folded().
 _LABELS = {
     "amg": ("boomeramg",),
     "conjugategradients": ("cg",),
@@ -17,9 +17,9 @@ _LABELS = {
 
 
 def find_name(value: Any, allowed: Iterable[str]) -> str | None:
-    """The allowed name that a text means; None if there is none.
+    """The allowed name that matches a text; None if there is none.
 
-    Case, blanks, hyphens and underscores do not count. The labels of ParaView's panels are understood, too.
+    Case, blanks, hyphens and underscores do not matter. The labels of ParaView's panels are also accepted.
     """
     if not isinstance(value, str):
         return None
@@ -30,14 +30,14 @@ def find_name(value: Any, allowed: Iterable[str]) -> str | None:
 
 
 def nearest_name(value: Any, allowed: Iterable[str]) -> str:
-    """What to add to the message for an unknown name: the nearest one, or nothing."""
+    """The addition to the message for an unknown name: the nearest one, or nothing."""
     names = {folded(name): name for name in allowed}
     best = closest(folded(str(value)), names)
     return f" (did you mean {names[best]!r}?)" if best else ""
 
 
 def closest(name: str, known: Iterable[str]) -> str:
-    """The nearest of several names, of equally near ones that of the nearest length; "" if none is near."""
+    """The nearest of several names, with ties broken by the nearest length; "" if none is near."""
     names = list(known)
     found = get_close_matches(name, names, len(names)) if names else []
     near = {other: (SequenceMatcher(None, other, name).ratio(), -abs(len(other) - len(name))) for other in found}
@@ -45,5 +45,5 @@ def closest(name: str, known: Iterable[str]) -> str:
 
 
 def folded(name: str) -> str:
-    """The name without what does not count."""
+    """The name without characters that do not matter."""
     return re.sub(r"[\s_-]", "", name).casefold()

@@ -16,7 +16,8 @@ from ._files import replace_text
 
 NASTRAN_ENDINGS = (".bdf", ".nas", ".fem")
 #: VTK's types: the card, and the places of VTK's nodes in the order of the card, None where these are the same.
-#: Nastran's wedges list a triangle in the opposite order; edges along the axis come before those of the second face.
+#: Nastran's wedges list a triangle in the opposite order; edges along the axis come before the edges of the second
+#: face.
 _WEDGE = (0, 2, 1, 3, 5, 4)
 _CARDS: dict[int, tuple[str, tuple[int, ...] | None]] = {
     3: ("CROD", None), 5: ("CTRIA3", None), 22: ("CTRIA6", None), 9: ("CQUAD4", None), 23: ("CQUAD8", None),
@@ -59,7 +60,7 @@ def _elements(mesh: vtkDataSet, name: str) -> Iterator[str]:
 
 
 def _references(mesh: vtkDataSet) -> Array:
-    """The number of the property of each cell: its Reference where that is one, else 1."""
+    """The number of the property of each cell: its Reference if that is valid, otherwise 1."""
     found = mesh.GetCellData().GetArray("Reference")
     if found is None or found.GetNumberOfComponents() != 1:
         return np.ones(mesh.GetNumberOfCells(), int)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Of optimize(): its result, and arguments that are not one property each."""
+"""The result of optimize(), and its arguments that are not one property each."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ Objective = Union[str, "tuple[str, dict[str, Any]]"]
 
 @dataclass(frozen=True, repr=False, eq=False)
 class OptimizeResult(Result):
-    """The result of optimize(). Of composite data, numbers are of all blocks; the reason is that of the last one.
+    """The result of optimize(). For composite data, numbers cover all blocks; the reason is for the last block.
 
     Attributes
     ----------
@@ -48,12 +48,12 @@ class OptimizeResult(Result):
         The mesh with the new points, `Displacement`, `Validity`, and per metric its value after (`imr`) and before
         (`imr_before`).
     history : dict[str, Any]
-        Per iteration (0 is the input): iteration, objective, <metric>_mean, <metric>_worst, of several objectives also
-        <metric>_objective; inverted, gradient_norm, moving, seconds; of composite data also block.
+        Per iteration (0 is the input): iteration, objective, <metric>_mean, <metric>_worst, for several objectives also
+        <metric>_objective; inverted, gradient_norm, moving, seconds; for composite data also block.
     statistics : dict[str, dict[str, Any]]
         Per metric: label, and with the suffixes _before and _after: minimum, mean, maximum, rms, standard_deviation,
-        worst, outside_acceptable, inverted, degenerate. Of composite data the keys are "block n metric". With the
-        preset "finite volumes", per check of checkMesh: label, and of both offending, minimum and maximum.
+        worst, outside_acceptable, inverted, degenerate. For composite data the keys are "block n metric". With the
+        preset "finite volumes", per check of checkMesh: label, and before and after: offending, minimum and maximum.
     reason : str
         The stopping criterion that ended the run.
     inverted_before, inverted, iterations : int
@@ -65,8 +65,8 @@ class OptimizeResult(Result):
     validity : Array
         Per cell, m: 1 valid, 0 degenerate, -1 inverted, -2 not measured, -3 not finite.
     surface_error : float
-        Largest distance between the facets of a surface in space (of the boundary, where its points slide) and those of
-        the input, measured from either to the other, or from them to the geometry; in the mesh's unit.
+        Largest distance between the facets of a surface in space (of the boundary, where its points slide) and the
+        facets of the input, measured in both directions, or from them to the geometry; in the mesh's unit.
     summary : str
         The result in words.
     """
@@ -106,14 +106,14 @@ def choose_preset(
     """Set the preset, or the objectives.
 
     preset: "fast clean-up", "best shape", "uniform size", "low interpolation error", "untangle then improve", "preserve
-        shape" (of the reference), "worst element", "finite volumes" (polyhedra, too) or "custom". "best shape" is the
+        shape" (of the reference), "worst element", "finite volumes" (also polyhedra) or "custom". "best shape" is the
         default if no objectives, no target and no argument that a preset replaces are given. The name of a metric, or a
-        list, is taken as objectives.
+        list, gives the objectives.
     objectives: what to optimize: names of metrics, or pairs of a name and a dict with any of "template" (how the values
         of the elements are aggregated: "default", "sum of squares", "sum of squared reciprocals", "sum of
         reciprocals", "sum", "power mean", "maximum"), "weight" (above 0; 1) and "target" ("ideal", "reference", "size",
-        "tensor"; the default is the one given below, if it is one, else "ideal"). The default is ["imr"]. The name of a
-        preset is taken as the preset.
+        "tensor"; the default is the target argument given below, if exactly one is given, otherwise
+        "ideal"). The default is ["imr"]. The name of a preset gives the preset.
     """
     given = {"reference": reference, "size": size, "tensor": tensor}
     targets = [name for name, value in given.items() if value is not None]
@@ -258,12 +258,12 @@ def add_optimize_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--objectives", "--objective", action="append", type=_objective, metavar="NAME[,KEY=VALUE...]",
                         help="a metric, optionally with template=, weight= and target=; may be repeated")  # fmt: skip
     parser.add_argument("--size", metavar="VALUE|ARRAY", type=_commands.number_or_name,
-                        help="target: this area or volume, or that in an array")  # fmt: skip
+                        help="target: this area or volume, or an array of them")  # fmt: skip
     parser.add_argument("--limits", metavar="LENGTH|ARRAY", type=_commands.number_or_name,
                         help="largest displacement: a length or a point array (default: 0, no limit)")  # fmt: skip
     parser.add_argument("--utopia", type=_commands.numbers, metavar="X,...", help="best values of the objectives")
     parser.add_argument("--best-known", type=float, metavar="X",
-                        help="the least objective that is known, of --reduction (default: estimated)")  # fmt: skip
+                        help="the smallest known objective, for --reduction (default: estimated)")  # fmt: skip
 
 
 def optimize_options(arguments: argparse.Namespace) -> dict[str, Any]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Of peridynamics(), interaction_layer() and horizon_neighbors(): results, arguments that are not one property each."""
+"""Results of peridynamics(), interaction_layer() and horizon_neighbors(); arguments that are not one property each."""
 
 from __future__ import annotations
 
@@ -45,18 +45,18 @@ class PeridynamicsResult(Result):
     rows, nonzeros : int
         Number of unknowns, and of nonzero entries of the matrix.
     asymmetry : float
-        Of the dissertation's discretization: norm of the skew-symmetric part, which is dropped, over that of the
+        For the dissertation's discretization: norm of the skew-symmetric part, which is dropped, over the norm of the
         matrix.
     layer_deficit : float
-        Horizon minus width of the interaction layer, where the layer is narrower; else 0.
+        Horizon minus width of the interaction layer, if the layer is narrower; otherwise 0.
     statistics : dict[str, Any]
         All columns of the table `Spectrum` by name in snake case.
     solution : Array | None
         The solution per point (linear basis) or cell, elastic with 3 components; None if not computed.
     dilatation, energy_density : Array | None
-        Of the solution of an elastic model, per cell at the centroid, 0 in the layer; None if not computed.
+        For the solution of an elastic model, per cell at the centroid, 0 in the layer; None if not computed.
     iterations : int
-        Of the solution; 0 if not computed.
+        For the solution; 0 if not computed.
     residual : float
         relative, of the solution.
     preconditioned_condition : float
@@ -95,7 +95,7 @@ class PeridynamicsResult(Result):
 def set_values(filter_: Any, values: Sequence[float] = ()) -> None:
     """Set the table of the kernel.
 
-    values: of the kernel "table", at equal distances from 0 to delta.
+    values: values of the kernel "table", at equal distances from 0 to delta.
     """
     for value in sequence("values", values):
         filter_.AddKernelValue(number("values", value))
@@ -118,7 +118,7 @@ def set_model(filter_: Any, model: Model = "scalar") -> None:
 def set_plane(filter_: Any, plane: PlaneState = "strain") -> None:
     """Set the state of the plane.
 
-    plane: of the state-based model: "strain" (a long body) or "stress" (a thin plate).
+    plane: for the state-based model: "strain" (a long body) or "stress" (a thin plate).
     """
     filter_.SetPlaneStress(bool(pick("plane", plane, PLANE_STATES)))
 
@@ -202,7 +202,7 @@ class HorizonResult(Result):
     area : Array
         Per triangle, k: area of its part in the disc.
     missed : Array
-        Per triangle, k: area minus that which the dissertation approximates.
+        Per triangle, k: area minus the approximate area of the dissertation.
     horizon : vtkPolyData
         The circle, as a closed line.
     pieces : vtkPolyData

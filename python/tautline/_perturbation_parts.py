@@ -16,7 +16,7 @@ from ._results import Result
 
 @dataclass(frozen=True, repr=False, eq=False)
 class PerturbResult(Result):
-    """The result of perturb(). Of composite data, the numbers are those of all blocks.
+    """The result of perturb(). For composite data, numbers cover all blocks.
 
     Attributes
     ----------
@@ -25,7 +25,7 @@ class PerturbResult(Result):
     displacement : Array
         New minus old position, n x 3.
     movable, moved : int
-        Number of interior points that were free to move, and of those that moved.
+        Number of interior points that were free to move, and of points that moved.
     inverted_before, inverted, tangled : int, float
         Number of inverted elements before and after, and the latter as a fraction of all elements.
     largest_displacement : float

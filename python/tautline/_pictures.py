@@ -13,18 +13,18 @@ from ._arrays import leaves
 from ._errors import Error, Messages, run
 
 _BODY = re.compile(r"<body>\n?(.*)</body>", re.DOTALL)
-#: The layout of picture and legend, which stands in the head of the report.
+#: The layout of picture and legend, which is in the head of the report.
 _LAYOUT = (
     ("<img ", '<img style="max-width:30em" '),
     ('<div class="legend">', '<div style="display:flex;width:30em">'),
     ('<span style="background', '<span style="flex:1;height:1em;background'),
     ('<div class="ends">', '<div style="display:flex;justify-content:space-between;width:30em">'),
 )
-_METRIC = "imr"  # of meshes that have no metric's array
+_METRIC = "imr"  # for meshes without an array of a metric
 
 
 def picture_html(mesh: vtkDataObject) -> str:
-    """The mesh coloured by the first of its cell arrays that is a metric's, else by the inverse mean ratio, as HTML.
+    """The mesh colored by its first cell array of a metric, otherwise by the inverse mean ratio, as HTML.
 
     "" if there is nothing to measure, or if it is an image, whose cells are all alike.
     """

@@ -26,7 +26,7 @@ from ._quality_parts import criteria_presets
 from ._results import Result
 from ._state import STATE, run_state
 
-#: The functions that a step can call, by the file of the capability. Each takes the mesh of the steps before.
+#: The functions that a step can call, by the file of the capability. Each takes the mesh of the previous steps.
 _FUNCTIONS = {
     "quality": "_quality",
     "perturb": "_perturbation",
@@ -90,7 +90,7 @@ def run_steps(
     check_only: bool = False,
     progress: Progress | bool | None = None,
 ) -> StepsResult | None:
-    """Run the steps of a TOML file one after the other, each on the mesh of the one before.
+    """Run the steps of a TOML file one after the other, each on the mesh of the previous one.
 
     Parameters
     ----------
@@ -103,8 +103,8 @@ def run_steps(
     check_only : bool, default False
         Check the steps, do not run them.
     progress : bool or callable, optional
-        True: a bar on the terminal, if there is one. Else a function, called ten times a second with the fraction done,
-        0 to 1, and a text; it cancels by returning False, which raises Aborted. Ctrl-C raises KeyboardInterrupt.
+        True: a bar on the terminal, if there is one. Otherwise a function, called ten times a second with the fraction
+        done, 0 to 1, and a text; it cancels by returning False, which raises Aborted. Ctrl-C raises KeyboardInterrupt.
 
     Returns
     -------
@@ -315,9 +315,9 @@ def add_commands(commands: Any) -> None:
     text = "tables [[step]], each with the key do, see tautline.run_steps; or a state of ParaView"
     parser.add_argument("steps", metavar="FILE", help=text)
     parser.add_argument("--check", action="store_true", help="check the steps only")
-    parser.add_argument("--mesh", metavar="FILE", help="of a state: another mesh in the place of the one that it reads")
-    parser.add_argument("--filter", metavar="NAME", help="of a state with several ends: the filter whose mesh is taken")
-    _commands.add_output(parser, "of a state: where to write the mesh", required=False)
+    parser.add_argument("--mesh", metavar="FILE", help="for a state: another mesh, instead of the one that it reads")
+    parser.add_argument("--filter", metavar="NAME", help="for a state with several ends: the filter to choose")
+    _commands.add_output(parser, "for a state: where to write the mesh", required=False)
 
 
 def _run(arguments: argparse.Namespace) -> int:

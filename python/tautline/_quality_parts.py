@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Of quality(): its result, arguments that are not one property each, and the function criteria."""
+"""The result of quality(), its arguments that are not one property each, and the function criteria."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ _MAX_WORST = 10  # elements listed per metric
 @dataclass(frozen=True, repr=False, eq=False)
 class QualityResult(Result):
     """The result of quality(). Dicts are by the names of the metrics, in the order in which they were given; labels,
-    symbols and aliases of metrics are found, too. On several MPI ranks each has the arrays of its piece; the numbers of
+    symbols and aliases of metrics are also found. On several MPI ranks each has the arrays of its piece; the numbers of
     the whole mesh are on the first rank, and empty or None on the others.
 
     Attributes
@@ -48,29 +48,29 @@ class QualityResult(Result):
     mesh : vtkDataObject
         The mesh with a cell array per metric and `Validity`; shares the other arrays with the input.
     values : dict[str, Array]
-        Per metric its value on each cell, m; of composite data the blocks concatenated. 0 where it is not defined.
+        Per metric its value on each cell, m; for composite data the blocks concatenated. 0 where it is not defined.
     validity : Array
         Per cell, m: 1 valid, 0 degenerate, -1 inverted, -2 not measured, -3 not finite.
     statistics : dict[str, dict[str, Any]]
         Per metric: label, measured, minimum, maximum, mean, rms, standard_deviation, quantile_01 to quantile_99, worst
         (nan if nothing was measured), outside_acceptable, acceptable_low, acceptable_high, inverted, degenerate,
         not_measured, non_finite, curved (cells of higher order that are certified), missed_at_corners and
-        missed_at_integration_points (those of them that are not valid, though the determinant is positive at all
-        corners, or at all integration points of solvers). All are over the measured elements: the valid and the
-        inverted ones on which the metric is defined. The worst value is that of an inverted element if there are any,
-        else the maximum or minimum, by the direction of the metric. Of the k elements to repair first, at most ten:
-        worst_cells (k), worst_values (k), worst_positions (k x 3); inverted elements come first, then degenerate ones,
-        then the worst of the others.
+        missed_at_integration_points (invalid curved cells with a positive determinant at all corners, or at all
+        integration points of solvers). All are over the measured elements: the valid and the
+        inverted ones on which the metric is defined. The worst value is taken from the inverted elements if there are
+        any, otherwise it is the maximum or minimum, by the direction of the metric. For the k elements to repair first,
+        at most ten: worst_cells (k), worst_values (k), worst_positions (k x 3); inverted elements come first, then
+        degenerate ones, then the worst of the others.
     distribution : dict[str, dict[str, Array]]
         Per metric the histogram of the measured elements: value (centers of the bins) and count.
     histogram : dict[str, dict[str, Array]]
-        Per metric the histogram over its acceptable range: from, to and count; the first row has the elements below the
-        range, the last row those above it.
+        Per metric the histogram over its acceptable range: from, to and count; the first row counts the elements below
+        the range, the last row the elements above it.
     angles : dict[str, Array]
-        angles (of volumes: dihedral angles) in the five bins of Table 2.7: from, to (degrees), count, percent.
+        angles (for volumes: dihedral angles) in the five bins of Table 2.7: from, to (degrees), count, percent.
     worst : vtkPolyData
-        A point at the center of each of the worst elements, in curved ones where the determinant is smallest, with the
-        arrays Metric, Rank, CellId, Value, Validity.
+        A point at the center of each of the worst elements (in curved ones, where the determinant is smallest), with
+        the arrays Metric, Rank, CellId, Value, Validity.
     inverted, degenerate : int | None
         Number of inverted elements, and of elements without area or volume.
     verdict : str | None
@@ -80,14 +80,15 @@ class QualityResult(Result):
     grades : Array | None
         Grade of each cell, m: 0 passed, 1 warning, 2 failed, -1 none; None without criteria.
     bounds : Array | None
-        With jacobian_bounds, a certified lower bound of the smallest Jacobian determinant in each cell, m; else None.
+        With jacobian_bounds, a certified lower bound of the smallest Jacobian determinant in each cell, m; otherwise
+        None.
     criteria : dict[str, dict[str, Any]]
         Per metric of the criteria: label, weight, graded, passed, warning, failed (elements), mean_penalty.
     checks : dict[str, Array]
         Per check of solvers, if any were chosen, its value on each cell, m.
     faces : vtkPolyData | None
         The faces that fail a check of OpenFOAM's checkMesh (or all, see face_output), with the cell arrays Face, Owner,
-        Neighbour, Patch, Failed, OwnerWeight and one per metric; None without metrics of finite volumes.
+        `Neighbour`, Patch, Failed, OwnerWeight and one per metric; None without metrics of finite volumes.
     mesh_checks : dict[str, dict[str, Any]]
         Per check of checkMesh: label, minimum, maximum, mean, limit, offending, severe, on_request (only with
         -allTopology and -allGeometry), failed, bit (in Failed of the faces). Empty without metrics of finite volumes.
@@ -125,11 +126,11 @@ class QualityResult(Result):
     summary: str
 
     def table(self) -> list[dict[str, Any]]:
-        """A row per metric: what --csv writes."""
+        """A row per metric, as --csv writes it."""
         return quality_rows(self)
 
     def groups(self) -> dict[str, Array]:
-        """Sets of elements by name, as numbers from 0: what write() takes as `groups`.
+        """Sets of elements by name, as numbers from 0: the argument `groups` of write().
 
         Inverted and Degenerate; with criteria also Failed and Warning. A set may be empty.
 
@@ -166,7 +167,7 @@ def set_criteria(
     """Set the criteria.
 
     criteria: limits that the elements are graded by: the name of a preset, a JSON file, or a dict as criteria() returns
-        it. Their metrics are measured too.
+        it. Their metrics are also measured.
     """
     filter_.SetCriteria(_criteria_text(criteria))
 
@@ -184,7 +185,7 @@ def set_target(
     """Set the type of the target.
 
     target: the target element of target metrics: "ideal", "reference", "size" or "tensor". It follows from the
-        arguments of these names, of which at most one may be given.
+        arguments of these names; at most one of them may be given.
     size: target area or volume: a number, one per cell or point, or the name of an array.
     """
     target = picked("target", target, TARGETS)
@@ -204,7 +205,7 @@ def set_target(
 
 @checked
 def criteria(name: str) -> dict[str, Any]:
-    """The preset quality criteria of a name, to be used by quality() as they are or after a change.
+    """The preset quality criteria of a name, for use in quality(), unchanged or modified.
 
     Parameters
     ----------
@@ -265,7 +266,7 @@ def quality_result(filter_: Any, mesh: vtkDataObject) -> QualityResult:
     statistics = _statistics(columns(filter_.GetStatistics()), worst)
     bins = columns(filter_.GetDistribution())
     ranges = columns(filter_.GetHistogram())
-    # The tables are on the first rank of MPI; the others know what they measured by its arrays.
+    # The tables are on the first rank of MPI; the others find the measured metrics by its arrays.
     measured = list(statistics) or [m["name"] for m in known_metrics() if has_array(mesh, m["name"], CELLS)]
     totals = next(iter(statistics.values()), {"inverted": None, "degenerate": None})
     graded = bool(filter_.GetVerdict())
@@ -352,14 +353,14 @@ def _plain(value: Any) -> Any:
 
 
 def add_quality_options(parser: argparse.ArgumentParser) -> None:
-    """Add the options of these arguments, and those of the output."""
+    """Add the options of these arguments, and the options of the output."""
     _commands.take_more(parser)
     _commands.add_metrics(parser)
     parser.add_argument("--worst", type=int, choices=range(_MAX_WORST + 1), default=0, metavar=f"0..{_MAX_WORST}",
                         help="list this many of the worst elements (default: 0)")  # fmt: skip
     parser.add_argument("--target", choices=TARGETS, default="ideal", help="follows from the options of these names")
     parser.add_argument("--size", metavar="VALUE|ARRAY", type=_commands.number_or_name,
-                        help="target: this area or volume, or that in an array")  # fmt: skip
+                        help="target: this area or volume, or an array of them")  # fmt: skip
     parser.add_argument("--criteria", metavar="NAME|FILE",
                         help="grade the elements by a preset or JSON file; exits with 3 if the mesh fails")  # fmt: skip
     parser.add_argument("--groups", action="store_true",
@@ -368,7 +369,7 @@ def add_quality_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--certificate", metavar="FILE",
                         help="write a proof for each element that it is valid, as JSON")  # fmt: skip
     parser.add_argument("--verify", metavar="FILE",
-                        help="check such a proof by other means; exits with 3 if it does not hold")  # fmt: skip
+                        help="check such a proof independently; exits with 3 if it does not hold")  # fmt: skip
 
 
 def quality_options(arguments: argparse.Namespace) -> dict[str, Any]:
@@ -405,7 +406,7 @@ def finish_quality(arguments: argparse.Namespace, filter_: Any, options: dict[st
 def finish_quality_of_several(arguments: argparse.Namespace, measured: Callable[[str], Any]) -> int:
     """Print a table of several meshes, a row for each; measured() returns the filter that has run for a file.
 
-    Returns 1 if a file could not be measured, else 3 if a mesh fails its criteria.
+    Returns 1 if a file could not be measured, otherwise 3 if a mesh fails its criteria.
     """
     for name in ("output", "report", "certificate", "verify"):
         if getattr(arguments, name):
@@ -420,7 +421,7 @@ def finish_quality_of_several(arguments: argparse.Namespace, measured: Callable[
         except Aborted:
             raise
         except Error as error:
-            if error.exit_code != 1:  # wrong usage, which is that of every file
+            if error.exit_code != 1:  # wrong usage, the same for every file
                 raise
             print(f"tautline: {error}", file=sys.stderr)
             code = 1

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Files that are read by a process of their own, because their reader may end it.
+"""Files that are read in a process of their own, because their reader may end it.
 
-Readers of VTK and meshio crash, exit, or never end on some damaged files. What they do here is an error of read(). The
-process has a limit of time and of memory.
+Readers of VTK and meshio crash, exit, or never end on some damaged files. Such a failure becomes an error of read().
+The process has a limit of time and of memory.
 """
 
 from __future__ import annotations
@@ -28,11 +28,11 @@ _SECONDS, _SECONDS_PER_MEBIBYTE = 60.0, 2.0
 #: Bytes of address space that reading may take: at least, and for each byte of the file.
 _MEMORY, _MEMORY_PER_BYTE = 8 * 2**30, 100
 _MEBIBYTE = 2**20
-#: In the process: reading is not left to yet another one.
+#: In the process: reading does not start yet another one.
 _HERE = "TAUTLINE_READS_HERE"
 _PYTHON = re.compile(r"python[\d.]*|pvpython|pvbatch")
 _RESULT, _STARTED = "mesh", "started"
-#: By which MPI recognizes its processes.
+#: Variables by which MPI recognizes its processes.
 _OF_MPI = ("OMPI_COMM_", "OMPI_MCA_", "PMIX_", "PMI_", "HYDRA_")
 _END = b"\n"
 
@@ -43,9 +43,9 @@ def reads_here() -> bool:
 
 
 def read_apart(name: str, request: dict[str, Any], here: Callable[[], Any]) -> Any:
-    """What another process returns for a request, see answer(): a data object or a value of JSON.
+    """The answer of another process to a request, see answer(): a data object or a value of JSON.
 
-    here: does it in this process, where no other one can be started. Raises Error if the process reports one, if it is
+    here: does it in this process, if no other one can be started. Raises Error if the process reports one, if it is
     ended by a signal or a limit, or exits. Its warnings are issued again.
     """
     python = _interpreter()
@@ -78,7 +78,7 @@ def read_apart(name: str, request: dict[str, Any], here: Callable[[], Any]) -> A
 
 
 def _interpreter() -> str | None:
-    """The program that runs Python: in ParaView's programs with a window, the one of the system."""
+    """The program that runs Python: in ParaView's programs with a window, the system's Python."""
     if sys.executable and _PYTHON.fullmatch(os.path.basename(sys.executable)):
         return sys.executable
     found = os.path.join(sys.base_prefix, "bin", f"python{sys.version_info.major}.{sys.version_info.minor}")
@@ -111,7 +111,7 @@ def _result(name: str, file: str, done: subprocess.CompletedProcess[bytes]) -> A
 
 
 def answer(act: Callable[[dict[str, Any]], Any]) -> None:
-    """Do what the request in sys.argv asks, in a process that read_apart() has started, and write the result."""
+    """Execute the request in sys.argv, in a process that read_apart() has started, and write the result."""
     request = json.loads(sys.argv[1])
     for limit, value in ((resource.RLIMIT_AS, request["memory"]), (resource.RLIMIT_CPU, request["seconds"])):
         hard = resource.getrlimit(limit)[1]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Of improve(): its result, and arguments that are not one property each."""
+"""The result of improve(), and its arguments that are not one property each."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from ._errors import Error
 from ._metrics import metric_name
 from ._results import Result
 
-#: In the filter's numbering, but for the last one.
+#: In the filter's numbering, except the last one.
 Objective = Literal["angles and shape", "angles", "shape", "sum"]
 OBJECTIVES: tuple[Objective, ...] = get_args(Objective)
 _SIZES = 2  # input array of vtkMeshImprover
@@ -26,24 +26,24 @@ _SIZES = 2  # input array of vtkMeshImprover
 
 @dataclass(frozen=True, repr=False, eq=False)
 class ImproveResult(Result):
-    """The result of improve(). Of composite data, numbers are of all blocks.
+    """The result of improve(). For composite data, numbers cover all blocks.
 
     Attributes
     ----------
     mesh : vtkDataObject
         The new mesh with the data of the input, `OriginalCellId`, `min_angle` and `imr`.
     history : dict[str, Any]
-        Per pass (0 is the input): smallest_angle, largest_angle, worst_imr, elements, below_target, edge_removals (of
+        Per pass (0 is the input): smallest_angle, largest_angle, worst_imr, elements, below_target, edge_removals (for
         triangles: flips), face_removals, boundary_swaps, contractions, insertions, moves, seconds; with "adapt" also
-        edges_in_range and worst_quality_in_metric; of composite data also block.
+        edges_in_range and worst_quality_in_metric; for composite data also block.
     remaining : dict[str, Any]
         The elements that are still below the target, the worst first: cell, smallest_angle, imr, x, y, z, quality (of
-        the objective; of triangles the sine of the smallest angle), quality_bound (what facets or angles on the
-        boundary and between regions allow), reason; of composite data also block. Empty if there are none.
+        the objective; for triangles the sine of the smallest angle), quality_bound (what facets or angles on the
+        boundary and between regions allow), reason; for composite data also block. Empty if there are none.
     original_cell : Array
         Per cell the cell of the input that it has its data from, m.
     min_angle, imr : Array
-        Per cell, m: smallest angle in degrees (of tetrahedra dihedral), inverse mean ratio.
+        Per cell, m: smallest angle in degrees (for tetrahedra dihedral), inverse mean ratio.
     elements_before, elements : int
         Number of elements before and after.
     smallest_angle_before, smallest_angle : float
@@ -53,12 +53,12 @@ class ImproveResult(Result):
     worst_metric_before, worst_metric : float
         Worst value of the metric before and after; 0 without one.
     boundary_distance : float
-        Largest distance between the boundary and that of the input; 0 unless it is "on surface".
+        Largest distance between the boundaries of the result and the input; 0 unless it is "on surface".
     edges_in_range_before, edges_in_range : float
-        With "adapt", the part of the edges, 0 to 1, that are 0.71 to 1.41 times as long as the target, before and
-        after; else 0.
+        With "adapt", the fraction of the edges, 0 to 1, that are 0.71 to 1.41 times as long as the target, before and
+        after; otherwise 0.
     worst_in_metric : float
-        With "adapt", the largest inverse mean ratio in the metric; else 0.
+        With "adapt", the largest inverse mean ratio in the metric; otherwise 0.
     reason : str
         The stopping criterion that ended the run.
     summary : str
@@ -92,10 +92,10 @@ class ImproveResult(Result):
 def choose_preset(filter_: Any, preset: ImprovePreset = "remove slivers", *, custom: dict[str, bool | None]) -> None:
     """Set the preset.
 
-    preset: "remove slivers" (changes only neighbourhoods of elements with dihedral angles below 15 or above 165
-        degrees, of triangles with angles below 15), "swap only" (no point moves), "swap and smooth" (no point is
+    preset: "remove slivers" (changes only neighborhoods of elements with dihedral angles below 15 or above 165 degrees,
+        for triangles with angles below 15), "swap only" (no point moves), "swap and smooth" (no point is
         inserted or removed), "aggressive" (every operation everywhere), "adapt" (edges get the lengths of edge_length,
-        with as many elements as that takes, and the worst elements are improved in this metric) or "custom" (the
+        with as many elements as needed, and the worst elements are improved in this metric) or "custom" (the
         operations given: swap, smooth, contract, insert, compound; all by default).
     """
     preset = picked("preset", preset, IMPROVE_PRESETS)
@@ -107,13 +107,13 @@ def choose_preset(filter_: Any, preset: ImprovePreset = "remove slivers", *, cus
 
 @sets("improve", "Objective", "Metric")
 def set_objective(filter_: Any, objective: Objective = "angles and shape", metric: str | None = None) -> None:
-    """Set what the worst tetrahedra are improved for.
+    """Set the objective for the worst tetrahedra.
 
-    objective: of tetrahedra, what the worst are improved for: "angles and shape" (the smaller of the sines of the
+    objective: for tetrahedra, the objective for the worst ones: "angles and shape" (the smaller of the sines of the
         dihedral angles and (mean ratio)^(3/2)), "angles" (the sines alone: larger smallest angles, longer tetrahedra)
-        or "shape" ((mean ratio)^(3/2) alone). "sum": all are improved, for the sum of what their inverse mean ratios
-        exceed 1, and the worst are held.
-    metric: of tetrahedra, instead of an objective: the name of a metric, whose worst values are improved first and
+        or "shape" ((mean ratio)^(3/2) alone). "sum": all are improved, by the sum of (inverse mean ratio - 1), and the
+        worst do not become worse.
+    metric: for tetrahedra, instead of an objective: the name of a metric, whose worst values are improved first and
         never become worse. Tetrahedra are worked on while the quality x / I (I / x where smaller is better, 1 / (1 + x)
         where I is 0), of the value x and the ideal value I, is below the sine of the target angle.
     """
@@ -193,10 +193,10 @@ def add_improve_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of these arguments."""
     parser.add_argument("--preset", choices=IMPROVE_PRESETS, default="remove slivers")
     parser.add_argument("--objective", choices=OBJECTIVES, default=OBJECTIVES[0],
-                        help="what the worst tetrahedra are improved for")  # fmt: skip
+                        help="the objective for the worst tetrahedra")  # fmt: skip
     parser.add_argument("--metric", metavar="NAME", help="a metric instead of an objective, its worst values first")
     parser.add_argument("--edge-length", type=_commands.number_or_name, metavar="LENGTH|ARRAY|input",
-                        help="target length of edges: number, point array, or that of the input")  # fmt: skip
+                        help="target length of edges: number, point array, or input")  # fmt: skip
 
 
 def improve_options(arguments: argparse.Namespace) -> dict[str, Any]:

@@ -29,21 +29,21 @@ from ._views import MeshViews, NamedDict, cell_data_of, cells_of, point_data_of,
 
 _MAX_WIDTH = 110  # characters of a line that is printed
 _SUMMARY_LINES = 3
-#: Attributes of the mesh that are also those of a result, unless it has a field of this name.
+#: Attributes of the mesh that a result also has, unless it has a field of this name.
 _VIEWS: dict[str, Callable[[Any], Any]] = {
     "points": points_of, "cells": cells_of, "point_data": point_data_of, "cell_data": cell_data_of,
 }  # fmt: skip
-_TIMES = "seconds"  # the end of the names of measured times, which differ from run to run
+_TIMES = "seconds"  # suffix of measured times, which differ from run to run
 
 
 class Result:
-    """What a function returns. It prints in five lines, and in a notebook with a picture of the mesh.
+    """The return value of a function. It prints in five lines, and in a notebook with a picture of the mesh.
 
     A result with a mesh has the numpy arrays of it: points, n x 3; cells, m x k by the name of the cell; point_data and
     cell_data, by the name of the array. They share memory with the mesh.
 
     copy.copy() shares meshes and arrays, copy.deepcopy() and pickle do not. Two results are equal if all their fields
-    are, apart from measured times and the summary.
+    are equal, apart from measured times and the summary.
     """
 
     #: Fields with an array per point or cell, which to_dict() leaves out.
@@ -112,7 +112,7 @@ class Result:
         return made
 
     def table(self) -> list[dict[str, Any]]:
-        """The main table as a list of rows, each a dict: what --csv writes. Raises Error if there is none."""
+        """The main table as a list of rows, each a dict, as --csv writes it. Raises Error if there is none."""
         for name in ("rows", "spectrum"):
             if isinstance(found := getattr(self, name, None), list):
                 return found
@@ -252,7 +252,7 @@ def _geometry(data: vtkDataSet) -> list[Array]:
     names = ("GetCells",) if hasattr(data, "GetCellTypesArray") else ("GetVerts", "GetLines", "GetPolys", "GetStrips")
     for name in names:
         cells = getattr(data, name)() if hasattr(data, name) else None
-        if cells and not hasattr(cells, "GetOffsetsArray"):  # of a structured grid, since VTK 9.3: its extent says all
+        if cells and not hasattr(cells, "GetOffsetsArray"):  # structured grid, since VTK 9.3: the extent is enough
             return found
         if cells:
             found += [_numbers(cells.GetOffsetsArray()), _numbers(cells.GetConnectivityArray())]

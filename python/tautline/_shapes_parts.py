@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Of silhouette(), match() and retrieval(): results, images, arguments that are not one property each."""
+"""The results of silhouette(), match() and retrieval(), images, and arguments that are not one property each."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ def silhouette_input(filter_: Any, image: Any) -> None:
 def set_threshold(filter_: Any, threshold: float | None = None) -> None:
     """Set the threshold.
 
-    threshold: grey value between the shape and the background; None: midway between the extremes.
+    threshold: gray value between the shape and the background; None: midway between the extremes.
     """
     if threshold is not None:
         filter_.SetUseThreshold(True)
@@ -133,11 +133,11 @@ class MatchResult(Result):
     points, displacement : Array
         Positions of the vertices in the target, n x 3, and these minus their positions in the source, n x 3.
     energy, statistics : float, dict[str, float]
-        The least energy, and all columns of the filter's table by name (see vtkShapeMatcher).
+        The smallest energy, and all columns of the filter's table by name (see vtkShapeMatcher).
     triangles : dict[str, Array]
         Per triangle, m, without weights: edge_cost, deformation, distortion; and their weighted sum, energy.
     rank, exact : int, bool
-        Rank of the solution by its energy (1: the least), and whether no placement of the vertices is better.
+        Rank of the solution by its energy (1: the smallest), and whether it is proved that no placement is better.
     summary : str
         The result in words.
     """
@@ -221,7 +221,7 @@ class RetrievalResult(Result):
     tables : dict[str, vtkTable]
         The filter's tables by name: Distances, Ranking, Statistics, Confusion.
     sheet : Array
-        A picture of each query, in a grey frame, with its best matches (at most 10), in a green frame if they are of
+        A picture of each query, in a gray frame, with its best matches (at most 10), in a green frame if they are of
         its class, in a red one if not: size x size x 3 bytes, the top row first. save_sheet() writes it.
     summary : str
         The result in words.
@@ -268,8 +268,8 @@ def read_silhouettes(
         folder images beside it) and class. Images are PNG, JPEG, TIFF, BMP, binary PGM and PPM files; other files of a
         folder are skipped.
     progress : bool or callable, optional
-        True: a bar on the terminal, if there is one. Else a function, called ten times a second with the fraction done,
-        0 to 1, and a text; it cancels by returning False, which raises Aborted. Ctrl-C raises KeyboardInterrupt.
+        True: a bar on the terminal, if there is one. Otherwise a function, called ten times a second with the fraction
+        done, 0 to 1, and a text; it cancels by returning False, which raises Aborted. Ctrl-C raises KeyboardInterrupt.
 
     Returns
     -------
@@ -386,7 +386,7 @@ def _numbers(table: vtkTable, column: int) -> Array:
 def add_silhouette_options(parser: argparse.ArgumentParser) -> None:
     """Add the image, and the options of these arguments."""
     parser.add_argument("image")
-    parser.add_argument("--threshold", type=float, help="grey value between the shape and the background")
+    parser.add_argument("--threshold", type=float, help="gray value between the shape and the background")
 
 
 def silhouette_options(arguments: argparse.Namespace) -> dict[str, Any]:

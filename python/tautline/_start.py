@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Ctrl-C while a command of the shell still imports the package: it ends with a message and the exit code of shells.
 
-Python would print where it was. Imports nothing of the package, which comes later.
+Python would print a traceback. Imports nothing of the package, which comes later.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ def _end(*_: object) -> None:
     os._exit(INTERRUPTED)
 
 
-#: How restore() finds the handler, also that of the script `tautline`.
+#: How restore() finds the handler, also the one of the script `tautline`.
 setattr(_end, "ends_start", True)
 
 

@@ -20,11 +20,11 @@ from ._files import check_input, file_name
 from ._io import read
 from ._results import Result
 
-#: What ends the name of a state.
+#: The ending of the name of a state.
 STATE = ".pvsm"
 _PROGRAM = "pvpython"
 _RUNNER = Path(__file__).with_name("_state_runner.py")
-#: The groups of proxies that are kept: what computes, with its parts; views and their parts need a display.
+#: The groups of proxies that are kept: filters and their parts; views and their parts need a display.
 _DROPPED = (
     "additional_lights", "animation", "animation_keyframes", "annotations", "cameramanipulators", "extractors",
     "layouts", "lookup_tables", "misc", "piecewise_functions", "representations", "scalar_bars", "settings", "textures",
@@ -59,10 +59,10 @@ def run_state(state: str | PathLike[str], *, mesh: str | PathLike[str] | None = 
     Parameters
     ----------
     state : str or path
-        A .pvsm file that ParaView saved (File > Save State). Views, colours and animations are left out. Files that it
-        reads are searched where it says, then beside it.
+        A .pvsm file that ParaView saved (File > Save State). Views, colors and animations are left out. Input files are
+        searched at the paths in the state, then beside it.
     mesh : str or path, optional
-        Another file, in the place of the one that the state reads.
+        Another file, instead of the one that the state reads.
     filter : str, default ""
         The filter whose output is the mesh of the result, by its name in the Pipeline Browser or its label. It may be
         left out where the state has one end.
@@ -74,8 +74,8 @@ def run_state(state: str | PathLike[str], *, mesh: str | PathLike[str] | None = 
     Raises
     ------
     Error
-        If it does not, if the state reads several files and another is given, if it has several ends and no filter is
-        chosen, and for every error of a filter.
+        If the state cannot be read, if it reads several files and `mesh` is given, if it has several ends and no filter
+        is chosen, and for every error of a filter.
 
     Notes
     -----
@@ -117,7 +117,7 @@ def run_state(state: str | PathLike[str], *, mesh: str | PathLike[str] | None = 
 
 
 def _computing(name: str, replaced: bool) -> str:
-    """The text of the state without what shows, and with the names of files that are there."""
+    """The text of the state without views, and with the names of files that exist."""
     try:
         root = ElementTree.fromstring(Path(name).read_bytes())
     except ElementTree.ParseError as error:
@@ -138,7 +138,7 @@ def _computing(name: str, replaced: bool) -> str:
 
 
 def _place(state: str, file: str, replaced: bool) -> str:
-    """Where a file of a state is: as the state has it, or beside the state."""
+    """The path of a file of a state: as in the state, or beside the state."""
     beside = os.path.join(os.path.dirname(os.path.abspath(state)), os.path.basename(file))
     for candidate in (file, beside):
         if os.path.isabs(candidate) and os.path.exists(candidate):

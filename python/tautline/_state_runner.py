@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """pvpython _state_runner.py JOB: runs the filters of a ParaView state, as tautline.run_state does.
 
-JOB (.json) has `state`, with sources and filters only; `mesh`, a file that takes the place of that of the one reader,
-or empty; `filter`, the name or the label of the filter whose mesh is wanted, or empty (an empty argument of pvpython
+JOB (.json) has `state`, with sources and filters only; `mesh`, a file that replaces the file of the only reader, or
+empty; `filter`, the name or the label of the filter whose mesh is the result, or empty (an empty argument of pvpython
 would crash it); and `result`, a .json file that gets a list of the filters with their summaries and the file with the
 mesh, or `error`.
 """
@@ -58,7 +58,7 @@ def _is_reader(source: Any) -> bool:
 
 
 def _replace_reader(sources: list[Any], mesh: str) -> list[Any]:
-    """Connect another file to what takes the file of the one reader of the state."""
+    """Connect another file to the consumers of the only reader of the state."""
     readers = [source for source in sources if _is_reader(source)]
     if len(readers) != 1:
         raise tautline.Error(f"the state reads {len(readers)} files; another mesh can be given where it reads one")
@@ -76,7 +76,7 @@ def _replace_reader(sources: list[Any], mesh: str) -> list[Any]:
 
 
 def _chosen(names: dict[Any, str], order: list[Any], wanted: str) -> Any:
-    """The filter of a name or a label, else the one whose output no other one takes."""
+    """The filter of a name or a label, otherwise the one whose output no other one takes."""
     taken = {producer.GetGlobalID() for source in order for producer in _producers(source)}
     if wanted:
         found = [source for source in order if wanted in (names.get(source), source.GetXMLLabel())]
@@ -132,6 +132,6 @@ if __name__ == "__main__":
     try:
         main(job["state"], job["mesh"], job["filter"], job["result"])
     except tautline.Error as error:
-        # not to stderr, which pvpython hands to the window of messages
+        # not to stderr, which pvpython redirects to the message window
         Path(job["result"]).write_text(json.dumps({"error": str(error)}), encoding="utf-8")
     os._exit(0)  # the end of pvpython can crash in ParaView's own objects

@@ -15,13 +15,13 @@ from ._arrays import Array, cell_types
 from ._errors import Error
 from ._files import replace_text
 
-#: Points and dimension of each type of cells, whose numbers are those of VTK.
+#: Points and dimension of each type of cells; the types have VTK's numbers.
 _CELLS = {3: (2, 1), 5: (3, 2), 9: (4, 2), 10: (4, 3), 12: (8, 3), 13: (6, 3), 14: (5, 3)}
-#: The normal of the first triangle of SU2's wedge points inwards, of VTK's outwards. Its own inverse.
+#: The normal of the first triangle of SU2's wedge points inward, of VTK's outward. Its own inverse.
 _WEDGE, _WEDGE_ORDER = 13, [0, 2, 1, 3, 5, 4]
 _PLANE = 2  # dimensions
 _KEYWORD = re.compile(r"\s*([A-Z_0-9]+)\s*=\s*(.*?)\s*")
-#: Of the cell arrays, the one that names the markers.
+#: The cell array that names the markers.
 _LABELS = ("Reference", "BoundaryMarker")
 
 
@@ -65,7 +65,7 @@ def read_su2(name: str, lower_cells: bool = False) -> vtkUnstructuredGrid:
     """Read a mesh. Raises Error, with the line, for a damaged file and one of several zones.
 
     lower_cells: also the cells of the markers, with the cell array `Reference` (the number that is the name of the
-    marker, else its place from 1) and the field array `Markers` of the names.
+    marker, otherwise its position from 1) and the field array `Markers` of the names.
     """
     lines = _Lines(name)
     dimension, points, cells, announced = 0, None, None, None  # type: int, Any, Any, int | None

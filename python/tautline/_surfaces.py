@@ -73,7 +73,7 @@ def _check_ply(name: str) -> None:
 
 
 def _ply_end(content: bytes, elements: list[tuple[int, list[list[str]]]], order: Literal["little", "big"]) -> int:
-    """Where the binary elements end, as far as the content tells."""
+    """The end of the binary elements, as far as the content shows it."""
     at = 0
     for count, properties in elements:
         if all(kind[0] != "list" for kind in properties):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A mesh file with other coordinates: everything else of it stays as it is, byte by byte.
+"""A mesh file with other coordinates: everything else stays as it is, byte by byte.
 
 Markers, sets, materials, types of elements and comments of a solver's file are not in the mesh that is read from it.
 After a motion of points, the file is copied and only its coordinates are replaced, in the format of its numbers.
@@ -29,13 +29,13 @@ from ._errors import Error
 from ._files import replace_bytes
 from ._unv import NODES, NODES_OF_ONE_LINE
 
-#: Where a coordinate stands, from and to; the three of a point one after the other, missing ones (z) left out.
+#: Begin and end of each coordinate in the text; the three of a point one after the other, missing ones (z) left out.
 _Span = tuple[int, int]
 _TOKEN = re.compile(rb"\S+")
 _NUMBER = re.compile(rb"([+-]?)(\d*)(\.?)(\d*)(?:([eEdD])([+-]?)(\d+))?")
 _OTHER_SYSTEM = re.compile(rb"^CORD[123][RCS]", re.MULTILINE | re.IGNORECASE)
 _PLACED = re.compile(rb"^\*(INSTANCE|SYSTEM)\b", re.MULTILINE | re.IGNORECASE)
-#: Numbers of a file are written with as many digits as they have in it, where that is a fixed number of at least this.
+#: Numbers keep the number of digits that they have in the file if it is fixed and at least this.
 _FEWEST_DIGITS = 8
 _UNV_SHORT, _UNV_HEAD = NODES_OF_ONE_LINE.encode(), 4  # numbers before the coordinates
 _UNV_NODES = (*(number.encode() for number in NODES), _UNV_SHORT)
@@ -48,7 +48,7 @@ def rewrite(source: str, target: str, before: Array, after: Array) -> float:
 
     before: the coordinates of the points as the reader of the format gives them, n x 3. after: the new ones. Returns
     the largest rounding of a coordinate by the fields of the file. Raises Error if the coordinates in the file are not
-    `before`, and for a format that cannot be handled so; then no file is written.
+    `before`, and for a format that cannot be handled this way; then no file is written.
     """
     ending = Path(source).suffix.lower()
     content, rounding = rewritten(source, ending, Path(source).read_bytes(), before, after)
@@ -94,7 +94,7 @@ def rewritten(source: str, ending: str, content: bytes, before: Array, after: Ar
 
 
 def _other_coordinates(ending: str, content: bytes) -> str:
-    """Why a model has its points in other coordinates than the mesh, with a remedy; "" if nothing is known."""
+    """The reason why a model's points are in other coordinates than the mesh, with a remedy; "" if it is unknown."""
     if ending in _NASTRAN and _OTHER_SYSTEM.search(content):
         return (
             "points of GRID are in coordinate systems of their own: save the model with GRID in the basic system, "
@@ -102,7 +102,7 @@ def _other_coordinates(ending: str, content: bytes) -> str:
         )
     if ending == _DECK and _PLACED.search(content):
         return (
-            "the points are those of parts, which instances place in the model: save it without parts and assemblies "
+            "the points belong to parts, which instances place in the model: save it without parts and assemblies "
             "(Abaqus/CAE: model attributes), or write .vtu or .msh"
         )
     return ""
@@ -133,7 +133,7 @@ def _layout(texts: list[bytes]) -> tuple[int, str] | None:
 
 
 def _text(value: float, layout: tuple[int, str] | None, width: int) -> bytes:
-    """A number in the layout of the file; exact where that has too few digits. Right-aligned where it was shorter."""
+    """A number in the layout of the file; exact if the layout has too few digits. Shorter ones are right-aligned."""
     value = float(value) + 0.0  # -0 is 0
     if layout and layout[1] and layout[0] >= _FEWEST_DIGITS:
         text = f"{value:.{layout[0]}e}".replace("e", layout[1])
@@ -152,7 +152,7 @@ def _blanks_before(content: bytes, a: int) -> int:
 
 
 def _nastran(value: float, old: bytes) -> bytes:
-    """A number in a field of Nastran: as many digits as the field has room for; of a free field all digits."""
+    """A number in a field of Nastran: as many digits as the field has room for; for a free field all digits."""
     width = len(old)
     if width not in (SMALL_FIELD, LARGE_FIELD):
         text = repr(float(value))
@@ -160,7 +160,7 @@ def _nastran(value: float, old: bytes) -> bytes:
     return nastran_number(value, width).encode()
 
 
-# --- where the coordinates stand, by format -----------------------------------------------------------------------
+# --- positions of the coordinates, by format ------------------------------------------------------------------------
 
 
 def _tokens(content: bytes, begin: int, end: int) -> Iterator[_Span]:
@@ -225,7 +225,7 @@ def _freefem(content: bytes) -> Iterator[list[_Span]]:
 
 
 def _uncommented(content: bytes, sign: bytes) -> bytes:
-    """The content with blanks in the place of comments."""
+    """The content with blanks instead of comments."""
     return re.sub(re.escape(sign) + rb"[^\n]*", lambda match: b" " * len(match[0]), content)
 
 

@@ -19,14 +19,14 @@ from ._results import Result
 
 @dataclass(frozen=True, repr=False, eq=False)
 class UntangleResult(Result):
-    """The result of untangle(). Of composite data, numbers are of all blocks.
+    """The result of untangle(). For composite data, numbers cover all blocks.
 
     Attributes
     ----------
     mesh : vtkDataObject
         The mesh with the new points, `Displacement`, `Validity` and `Obstacle`.
     history : dict[str, Any]
-        Per iteration (0 is the input): iteration, objective (the energy), inverted, gradient_norm, moving, seconds; of
+        Per iteration (0 is the input): iteration, objective (the energy), inverted, gradient_norm, moving, seconds; for
         composite data also block.
     validity : Array
         Per cell, m: 1 valid, 0 degenerate, -1 inverted, -2 not measured, -3 not finite.
@@ -34,7 +34,7 @@ class UntangleResult(Result):
         Per cell, m, why it is not valid: 0 it is valid, 1 the iterations ended, 2 all its points are fixed, 3 no
         position between the fixed points around makes it valid, 4 a fixed point is not finite.
     inverted_before, inverted, impossible : int
-        Number of inverted or degenerate elements before and after, and of those that fixed points make infeasible.
+        Number of inverted or degenerate elements before and after, and of elements that fixed points make infeasible.
     reason : str
         The stopping criterion that ended the run.
     displacement : Array

@@ -53,7 +53,7 @@ class _Element(NamedTuple):
 
 
 class _Lines:
-    """The lines of a dataset, and the number of the one that was taken last."""
+    """The lines of a dataset, and the number of the line that was taken last."""
 
     def __init__(self, name: str, texts: list[str], begin: int, end: int) -> None:
         self.name, self.texts, self.at, self.end = name, texts, begin, end
@@ -159,7 +159,7 @@ def _read_nodes(lines: _Lines, short: bool, places: dict[int, int], points: list
 
 
 def _read_elements(lines: _Lines, place: int, elements: list[_Element]) -> int:
-    """Append the elements of a dataset; the number of those that are no cells."""
+    """Append the elements of a dataset; returns the number of elements that are not cells."""
     others = 0
     while lines.more():
         head = lines.whole("an element", place + 1)

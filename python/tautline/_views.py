@@ -26,16 +26,16 @@ from ._tables import many
 
 Value = TypeVar("Value")
 
-#: Cells of images, by VTK's number: those of other meshes that they are, and the order of their points.
+#: Cells of images, by VTK's number: the equivalent cells of other meshes, and the order of their points.
 _REGULAR = {8: (9, [0, 1, 3, 2]), 11: (12, [0, 1, 3, 2, 4, 5, 7, 6])}
 
 
 class NamedDict(dict[str, Value]):
     """A dict whose keys are also found by their other names, such as the aliases of metrics."""
 
-    #: Returns the key that a name means, or None, of the keys there are.
+    #: Returns the key for a name, or None, given all keys.
     _find: Callable[[str, list[str]], str | None]
-    #: What the keys are, for messages.
+    #: The kind of the keys, for messages.
     _what: str
 
     def __init__(self, values: Any, find: Callable[[str, list[str]], str | None], what: str) -> None:
@@ -54,7 +54,7 @@ class NamedDict(dict[str, Value]):
         return isinstance(key, str) and self._find(key, list(self)) is not None
 
     def get(self, key: Any, default: Any = None) -> Any:
-        """The value of a key or of another name of it; else the default."""
+        """The value of a key or of another name of it; otherwise the default."""
         return self[key] if key in self else default
 
     def __reduce__(self) -> Any:
@@ -123,7 +123,7 @@ class Arrays(MutableMapping[str, Any]):
 def points_of(mesh: Any) -> Array:
     """The coordinates of the points, n x 3.
 
-    They share memory with the mesh; of images and rectilinear grids, which have none, they are a read-only copy.
+    They share memory with the mesh; for images and rectilinear grids, which have none, they are a read-only copy.
     """
     if isinstance(mesh, vtkPointSet) or mesh.IsA("vtkPointSet"):
         return np.asarray(vtk_to_numpy(mesh.GetPoints().GetData())) if mesh.GetPoints() else np.zeros((0, 3))
@@ -133,8 +133,8 @@ def points_of(mesh: Any) -> Array:
 def cells_of(mesh: Any) -> NamedDict[Any]:
     """The numbers of the points of the cells, from 0, by the name of the cell: m x k in VTK's order.
 
-    An array shares memory with the mesh where the cells of its type follow each other in an unstructured grid, else it
-    is a read-only copy. Cells without a fixed number of points (polygons, polyhedra) are a list of arrays.
+    An array shares memory with the mesh where the cells of its type follow each other in an unstructured grid,
+    otherwise it is a read-only copy. Cells without a fixed number of points (polygons, polyhedra) are a list of arrays.
     """
     if not mesh.IsA("vtkUnstructuredGrid"):
         found = _cells(_as_grid(mesh))
@@ -202,13 +202,13 @@ def _block(ids: Array, offsets: Array, cells: Array, size: int) -> Array:
 
 
 class MeshViews:
-    """What the meshes of the package have besides the methods of VTK's classes."""
+    """Attributes of the package's meshes besides the methods of VTK's classes."""
 
-    #: Whether the points may have been written to, of which the bounds that VTK keeps know nothing.
+    #: Whether the points may have been modified, which would make the bounds that VTK caches stale.
     _points_taken = False
 
     def refresh(self) -> None:
-        """Let VTK compute the bounds again where the points may have been written to."""
+        """Make VTK compute the bounds again if the points may have been modified."""
         if self._points_taken and isinstance(self, vtkPointSet) and self.GetPoints():
             self.GetPoints().Modified()
 
@@ -216,7 +216,7 @@ class MeshViews:
     def points(self) -> Array:
         """The coordinates of the points, n x 3; they share memory with the mesh.
 
-        Of images and rectilinear grids, which have none, they are a read-only copy.
+        For images and rectilinear grids, which have none, they are a read-only copy.
         """
         self._points_taken = True
         return points_of(self)
@@ -241,7 +241,8 @@ class MeshViews:
         """The numbers of the points of the cells, from 0, by the name of the cell: m x k in VTK's order.
 
         An array shares memory with the mesh where the cells of its type follow each other in an unstructured grid,
-        else it is a read-only copy. Cells without a fixed number of points (polygons, polyhedra) are a list of arrays.
+        otherwise it is a read-only copy. Cells without a fixed number of points (polygons, polyhedra) are a list of
+        arrays.
         """
         return cells_of(self)
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The compiled modules of the package and their VTK classes.
 
-Every compiled module that was built (TautlineQuality, ...) stands beside this file. Its classes are attributes of this
+Every compiled module that was built (TautlineQuality, ...) is beside this file. Its classes are attributes of this
 module: `_vtk.vtkElementQuality()`. An optional module that was not built is skipped; a module that exists but cannot be
 imported raises ImportError. The modules with linear solvers, which load PETSc and its libraries, are imported when one
 of their classes is used.

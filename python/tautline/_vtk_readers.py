@@ -23,7 +23,7 @@ from ._errors import Aborted, Error, Messages, run, watch
 class SolverFormat:
     """How files with an ending are read."""
 
-    #: What the format is called, its module of vtkmodules and its class of reader.
+    #: The name of the format, its module of vtkmodules and its class of reader.
     title: str
     module: str
     reader: str
@@ -83,9 +83,9 @@ def is_ucd(name: str) -> bool:
 
 
 def _check_ucd(name: str) -> None:
-    """Raise Error, with the line, if an UCD file as text has not as many nodes, cells and values as its header says.
+    """Raise Error, with the line, if a UCD text file has fewer nodes, cells and values than its header announces.
 
-    VTK's reader takes what is missing as zeros, or as the rest of another line.
+    VTK's reader replaces missing values with zeros, or with the rest of another line.
     """
     with open(name, "rb") as file:
         content = file.read()
@@ -171,9 +171,9 @@ def read_series(name: str, time: float | None, read: Callable[[str], vtkDataObje
 
 
 def check_content(name: str, form: SolverFormat) -> None:
-    """Raise Error for what is not of the format: some libraries print to stderr or end the process then.
+    """Raise Error for a file of another format: some libraries would print to stderr or end the process.
 
-    Also if there is no such reader in this VTK.
+    Also if this VTK has no such reader.
     """
     if not form.built():
         raise Error(f"{name}: this VTK has no reader for {form.title}; save the mesh as .vtu")
@@ -208,7 +208,7 @@ def _damaged(name: str, form: SolverFormat) -> str:
 
 
 def _reader(name: str, form: SolverFormat) -> tuple[Any, Messages]:
-    """The reader of a file, which knows its time steps, and its messages. Raises Error if there are errors."""
+    """The reader of a file, with its time steps, and its messages. Raises Error if there are errors."""
     check_content(name, form)
     reader = getattr(import_module(f"vtkmodules.{form.module}"), form.reader)()
     getattr(reader, form.setter)(name)

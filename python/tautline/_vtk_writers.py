@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""VTK's writers: what they write is collected in memory and replaces the file as a whole.
+"""VTK's writers: their output is collected in memory and replaces the file as a whole.
 
 VTK does not notice every failure of a disk, removes the older file after some and aborts the program after others.
 """
@@ -31,12 +31,12 @@ from ._grid_checks import without_marks, writable
 from ._interrupts import updating
 from ._vtk import CLASSES
 
-# What blocks can be beside the meshes in the table of formats.
+# Types of blocks beside the meshes in the table of formats.
 _OTHER_BLOCKS = {
     ".vtt": Format("vtkXMLTableReader", "vtkXMLTableWriter", "vtkTable", "vtkIOXML"),
     ".htg": Format("vtkXMLHyperTreeGridReader", "vtkXMLHyperTreeGridWriter", "vtkHyperTreeGrid", "vtkIOXML"),
 }
-# The ends of what a format's files hold; VTK writes some files only in part and reports success.
+# The last text of each format's files; VTK writes some files only in part and reports success.
 _XML_END = b"</VTKFile>"
 # Bytes per KiB of the data: a copy of it, and the file.
 _MEMORY_OF_WRITERS = 2 * 1024
@@ -105,7 +105,7 @@ def block_files(name: str) -> list[str]:
 
 
 def _content(data: vtkDataObject, name: str, form: Format) -> bytes:
-    """What a writer of VTK writes to a file of that name."""
+    """The bytes that a writer of VTK writes to a file of that name."""
     writer = form.make_writer()
     for binary in ("SetFileTypeToBinary", "SetDataModeToBinary"):  # not appended data, see _io.py
         getattr(writer, binary, int)()

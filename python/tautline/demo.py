@@ -21,7 +21,7 @@ METRICS = ["imr", "rr", "scaled_jacobian"]
 SHOWN, TITLE = METRICS[0], "Inverse mean ratio"
 CELLS = 1  # vtkDataObject::CELL
 WORST = 3  # elements listed
-LOW_PRIORITY = -1.0  # of settings: below those of the site and the user
+LOW_PRIORITY = -1.0  # of settings: lower than the settings of the site and the user
 DOMAIN, CELL_COUNT = "bore", 8000
 SIZE = [1200, 800]
 FROM, ABOVE, UP, ZOOM = [0.75, -1.0, 0.55], [0.0, 0.0, 1.0], [0, 0, 1], 1.1  # the camera
@@ -133,7 +133,7 @@ def main(mesh: Path | None, output: Path) -> None:
     """Write quality.vtu, quality.csv and quality.png of a mesh, better.vtu and better.png of the improved one."""
     _files.make_folder(output)
     mesh = mesh or start(output)
-    # The colours of the plugin, which need not be built for the demo.
+    # The colors of the plugin, which need not be built for the demo.
     vtkSMSettings.GetInstance().AddCollectionFromString(tautline.vtkElementQuality.GetColorMapSettings(), LOW_PRIORITY)
     written = measure(mesh, output)
     picture(written[0], output / "quality.png")

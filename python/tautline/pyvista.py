@@ -3,7 +3,7 @@
 
 >>> import pyvista, tautline.pyvista
 >>> result = pyvista.read("part.vtu").tautline.untangle()
->>> result.inverted, result.mesh.volume  # result.mesh is a mesh of PyVista, too
+>>> result.inverted, result.mesh.volume  # result.mesh is also a mesh of PyVista
 
 PyVista has to be of the same VTK as Tautline; Debian 12 does not have it. Where it was imported before Tautline,
 `import tautline` is enough.
@@ -50,7 +50,7 @@ class Accessor:
 
 
 def wrapped(result: Any) -> Any:
-    """A result whose mesh is one of PyVista; a mesh as one of PyVista; anything else as it is."""
+    """A result whose mesh is one of PyVista; a mesh as one of PyVista; anything else unchanged."""
     if is_dataclass(result) and not isinstance(result, type) and hasattr(result, "mesh"):
         return replace(result, mesh=pyvista.wrap(result.mesh))
     return pyvista.wrap(result) if hasattr(result, "IsA") else result
