@@ -14,7 +14,7 @@
 
 namespace tautline
 {
-/// The points after those of the boundary have moved by the displacements, 3 each.
+/// The points after the boundary has moved by the displacements, 3 each.
 using Anchor = std::vector<double> (*)(const Mesh& mesh, const std::vector<double>& motion);
 
 /// Solves a x = b for several right-hand sides, the last columns of the rows; partial pivoting.
@@ -50,7 +50,7 @@ inline void eliminate(std::vector<std::vector<double>>& rows)
   }
 }
 
-/// What the anchors have in common.
+/// The common parts of the anchors.
 struct AnchorProblem
 {
   AnchorProblem(const Mesh& mesh, const std::vector<double>& given)

@@ -3,7 +3,7 @@
 // the mesh adapted, the metric evaluated again, and so on. Prints the share of edges of length
 // 1 / sqrt(2) to sqrt(2), the smallest and mean mean ratio, all in the analytic metric, and CPU
 // time.
-// Files are those of FreeFem++ (.msh), so that other programs can do the same.
+// Files have the format of FreeFem++ (.msh), so that other programs can do the same.
 //
 // usage: BenchmarkAdaptation cases                                the names of the cases
 //        BenchmarkAdaptation start CASE TRIANGLES FILE            writes the uniform mesh
@@ -42,7 +42,7 @@ struct Case
   bool hole = false;  ///< a plate with a hole instead of the unit square
 };
 
-/// Of the plate.
+/// For the plate.
 constexpr double HoleRadius = 0.1;
 
 /// The metrics of the Unstructured Grid Adaptation Working Group (UGAWG/adapt-benchmarks, cube and
@@ -99,7 +99,7 @@ bool inside(const Case& c, double x, double y)
   return !c.hole || std::hypot(x - 0.5, y - 0.5) > HoleRadius;
 }
 
-/// The factor of the metric with which so many unit triangles have the area in the metric.
+/// The factor of the metric with which this many unit triangles have the area in the metric.
 double scaleFor(const Case& c, double triangles)
 {
   constexpr int n = 2000;

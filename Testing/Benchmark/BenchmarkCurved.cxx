@@ -31,7 +31,7 @@ struct Kind
   int vtkType; ///< 0: a pyramid of 14 nodes
   int nodes;
   double invalid; ///< share
-  double size;    ///< number of elements over that of the command line
+  double size;    ///< number of elements over the command line's
 };
 constexpr Kind kinds[] = { { "tri6", 22, 6, 0.023, 1 }, { "tri15", 69, 15, 0.65, 1 },
   { "quad9", 28, 9, 0.017, 1 }, { "quad16", 70, 16, 0.41, 1 }, { "quad25", 70, 25, 0.75, 1 },

@@ -9,9 +9,9 @@
 //   best FILE                  sum of squared IMR after hundreds of sweeps, close to the minimum
 //   objective FILE REPEATS     value and gradient of the sum of squared IMR
 //   shape FILE REPEATS BEST    95 % of the reduction to BEST, 1.0001 BEST, the presets
-//   threads FILE REPEATS       one thread against two, wall time and that of the main thread
-//   busy PROCESSES REPEATS     one thread against all, in seconds, while so many processes compute
-//   untangle FILE REPEATS      vtkMeshUntangler, then the best shape
+//   threads FILE REPEATS       one thread against two, wall time, total and of the main thread
+//   busy PROCESSES REPEATS     one thread against all, in seconds, while this many processes
+//   compute untangle FILE REPEATS      vtkMeshUntangler, then the best shape
 //   converge FILE REPEATS      the preset that untangles and then improves
 //   worst FILE                 the preset for the worst element against the best shape
 //   sweeps FILE REPEATS        ten local sweeps of IMR and size by the exponential sum
@@ -65,7 +65,7 @@ public:
   {
   }
 
-  /// The best time of the work by a clock, in passes over so many elements.
+  /// The best time of the work by a clock, in passes over this many elements.
   double passes(
     vtkIdType elements, const std::function<void()>& work, double (*clock)() = processTime)
   {
@@ -156,7 +156,7 @@ vtkSmartPointer<vtkMeshOptimizer> optimizerOf(vtkDataSet* mesh, int preset)
   return filter;
 }
 
-/// The sum of squared IMR to a part of the reduction to a known optimum, and nothing else.
+/// The sum of squared IMR to a part of the reduction to a known optimum, only.
 vtkSmartPointer<vtkMeshOptimizer> optimizerTo(vtkDataSet* mesh, double reduction, double best)
 {
   constexpr int endless = 1000;
@@ -305,7 +305,7 @@ void threadsPart(const std::string& file, int repeats)
   for (const auto& [name, preset] : { std::pair("fast clean-up", vtkMeshOptimizer::FAST_CLEAN_UP),
          std::pair("best shape", vtkMeshOptimizer::BEST_SHAPE) })
   {
-    // What the main thread computes for is what would pass if no other program ran.
+    // The computing time of the main thread is the time that would pass if no other program ran.
     const auto filter = optimizerOf(grid, preset);
     double wall[2], own[2];
     wall[0] = wall[1] = own[0] = own[1] = std::numeric_limits<double>::infinity();

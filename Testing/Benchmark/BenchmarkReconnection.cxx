@@ -30,7 +30,7 @@ struct Case
   const char* name;
   ReconnectionPreset preset;
   BoundaryMotion boundary;
-  double targetAngle; ///< 0: that of the preset
+  double targetAngle; ///< 0: the preset's
 };
 
 /// Points that slide on the flat parts of the boundary move farther: the target is higher.

@@ -6,7 +6,8 @@
 //   file FILE METHOD REPEATS BEST    a mesh of a legacy VTK file; BEST is its minimum sum
 //   compare FILE REPEATS             the default against each of our methods, on a mesh of a file
 // METHOD: automatic, local, local-cg, fletcher-reeves, polak-ribiere, lbfgs or newton. The minimum
-// is known for grids of quadrilaterals and hexahedra, else found by Newton's method to ten digits.
+// is known for grids of quadrilaterals and hexahedra, otherwise found by Newton's method to ten
+// digits.
 
 #include "../../Filters/Core/MeshAdapter.h"
 #include "../Cxx/Blocks.h"
@@ -97,7 +98,7 @@ std::function<Vec3(const Vec3&)> stretching(const std::string& name)
 }
 
 /**
- * @brief A grid of about so many cells on the unit square or cube, of which the inner points are
+ * @brief A grid of about this many cells on the unit square or cube, of which the inner points are
  * moved: TYPE-STRETCHING, the type triangles, quads, tets or hexes.
  */
 MeshData makeGrid(const std::string& name, double cells)
@@ -195,7 +196,7 @@ void measure(const Mesh& mesh, const std::string& method, int repeats, double be
 
 /**
  * @brief For each method: the sum over the least that any reached, the seconds of the whole run and
- * those to 1.001 of the least (0: not reached). For the default also its time over that of the
+ * to 1.001 of the least (0: not reached). For the default also its time over the time of the
  * fastest other method to 1.001.
  */
 void comparePart(const std::string& file, int repeats)

@@ -3,7 +3,7 @@
 // Group (UGAWG/adapt-benchmarks), one thread: the metric is evaluated at the points, the mesh
 // adapted, the metric evaluated again, and so on. Prints the share of edges of length 1 / sqrt(2)
 // to sqrt(2), the smallest and mean mean ratio, all in the analytic metric, and CPU time.
-// Files are those of Medit (.mesh, .sol), so that other programs can do the same.
+// Files have the formats of Medit (.mesh, .sol), so that other programs can do the same.
 //
 // usage: BenchmarkVolumeAdaptation cases                           the names of the cases
 //        BenchmarkVolumeAdaptation start CASE TETRAHEDRA FILE      writes the uniform mesh
@@ -29,7 +29,7 @@ using namespace tautline;
 namespace
 {
 constexpr double Large = 0.1, Small = 1e-3;
-/// Of the cylinder that is cut from the edge x = y = 0 of the cube.
+/// For the cylinder that is cut from the edge x = y = 0 of the cube.
 constexpr double Radius = 0.5;
 
 double layer(double distance)
@@ -96,7 +96,7 @@ Vec3 placeOf(const Case& c, const Vec3& u)
   return x;
 }
 
-/// The factor of the metric with which the domain has so many unit tetrahedra.
+/// The factor of the metric with which the domain has this many unit tetrahedra.
 double scaleFor(const Case& c, double tetrahedra)
 {
   constexpr int across = 40, fine = 2000;

@@ -27,13 +27,13 @@ inline double cpuTime(clockid_t clock)
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
-/// What this thread has computed for; on a busy machine less than the time that passed.
+/// The computing time of this thread; on a busy machine less than the time that passed.
 inline double threadTime()
 {
   return cpuTime(CLOCK_THREAD_CPUTIME_ID);
 }
 
-/// What all threads have computed for.
+/// The computing time of all threads.
 inline double processTime()
 {
   return cpuTime(CLOCK_PROCESS_CPUTIME_ID);

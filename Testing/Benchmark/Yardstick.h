@@ -19,7 +19,7 @@ namespace tautline
  *
  * A *pass* over N elements is N times what this loop takes for one. Its source file is compiled
  * with -O2 for the plainest instruction set, whatever the flags of the rest: the unit does not
- * change as the compiler's vectorisation or the kernel does.
+ * change as the compiler's vectorization or the kernel does.
  */
 class Yardstick
 {

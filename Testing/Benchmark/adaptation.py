@@ -4,7 +4,7 @@
 Triangles: Adapt against bamg, the mesher of `adaptmesh` of FreeFem++ (Debian: freefem++), where that is installed. Both
 start with the same uniform mesh, and adapt it five times to the metric at its points. Prints the share of edges of
 length 1/sqrt(2) to sqrt(2), the smallest and the mean mean ratio, all in the analytic metric, and CPU seconds, of one
-thread. The metrics are those of BenchmarkAdaptation.cxx; bamg's smoothing of the metric is switched off.
+thread. The metrics come from BenchmarkAdaptation.cxx; bamg's smoothing of the metric is switched off.
 
 Tetrahedra: the same of BenchmarkVolumeAdaptation.cxx against mmg3d, where a program of this
 name, mmg3d_O3, is on the path; its gradation of the metric is switched off. Its time is the user time of the process.
@@ -57,9 +57,9 @@ savemesh(Th, "{end}");
 cout.precision(10);
 cout << "seconds\\t" << seconds << endl;
 """
-#: What is compared: larger is better.
+#: The compared quantities: larger is better.
 COMPARED = ("unit edges", "smallest mean ratio", "mean of mean ratios")
-#: CPU time over that of bamg.
+#: CPU time over bamg's.
 LARGEST_TIME_RATIO = 1.5
 
 
@@ -126,7 +126,7 @@ def compare(
 
 
 def run(program: Path, quick: bool) -> tuple[Figures, list[Row]]:
-    """What was measured, and the table; prints the figures of all programs.
+    """The measurements, and the table; prints the figures of all programs.
 
     program: BenchmarkAdaptation; BenchmarkVolumeAdaptation is beside it.
     """

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""calculix_decks.py [--keep FOLDER]: decks that CalculiX refuses, repaired by Tautline, and given to CalculiX again.
+"""calculix_decks.py [--keep FOLDER]: decks that CalculiX rejects, repaired by Tautline, and given to CalculiX again.
 
 Twenty parts are meshed coarsely by Gmsh with tetrahedra of ten nodes (C3D10) and written as decks of CalculiX: own
 weight, one end held. CalculiX ends with "nonpositive jacobian determinant" in each. `tautline untangle` repairs the
-mesh of a deck, and CalculiX must run through then, with finite displacements, and the mid nodes must still be those of
-curved edges. Prints the table of the documentation; the exit status is 1 where fewer than `AIM` decks run. Without
+mesh of a deck, and CalculiX must run through then, with finite displacements, and the mid nodes must still be on curved
+edges. Prints the table of the documentation; the exit status is 1 where fewer than `AIM` decks run. Without
 Gmsh's Python module and CalculiX (Debian: python3-gmsh, calculix-ccx) nothing is done.
 """
 
@@ -94,10 +94,10 @@ def write_deck(name: str, size: float, circle: int, file: Path) -> int:
 
 
 class Run(NamedTuple):
-    """What CalculiX has made of a deck."""
+    """The result of CalculiX for a deck."""
 
     ended: bool  #: Whether it ran through, with finite displacements.
-    refused: int  #: Elements with a nonpositive determinant that it names; it ends at the first ones.
+    rejected: int  #: Elements with a nonpositive determinant that it names; it ends at the first ones.
     displacement: float  #: The largest one.
 
 
@@ -105,12 +105,12 @@ def calculix(deck: Path) -> Run:
     """Gives a deck to CalculiX, in the folder of the deck, with one thread (its messages are in order then)."""
     done = subprocess.run(["ccx", deck.stem], cwd=deck.parent, capture_output=True, text=True, timeout=LONGEST_RUN,
                           env={**os.environ, "OMP_NUM_THREADS": "1"})  # fmt: skip
-    refused = len(set(re.findall(r"nonpositive jacobian\s+determinant in element\s+(\d+)", done.stdout)))
+    rejected = len(set(re.findall(r"nonpositive jacobian\s+determinant in element\s+(\d+)", done.stdout)))
     results = deck.with_suffix(".dat")
     rows = results.read_text().splitlines() if results.exists() else []
     values = np.array([row.split()[1:] for row in rows if len(row.split()) == 4 and row.split()[0].isdigit()], float)
     ended = done.returncode == 0 and "Job finished" in done.stdout and values.size > 0 and np.isfinite(values).all()
-    return Run(bool(ended), refused, float(np.abs(values).max()) if values.size else 0)
+    return Run(bool(ended), rejected, float(np.abs(values).max()) if values.size else 0)
 
 
 def curvature(deck: Path) -> float:
@@ -154,9 +154,9 @@ def repair(deck: Path, target: Path) -> tuple[bool, float]:
 
 
 def run(folder: Path) -> int:
-    """Prints the table; the number of decks that CalculiX refuses first and runs after the repair, still curved."""
+    """Prints the table; the number of decks that CalculiX rejects first and runs after the repair, still curved."""
     counts = generate(folder)
-    print("| deck | elements | refused by CalculiX | invalid (certified) | after the repair | curvature | seconds |")
+    print("| deck | elements | rejected by CalculiX | invalid (certified) | after the repair | curvature | seconds |")
     print("| --- | --- | --- | --- | --- | --- | --- |")
     good = 0
     for name, _, _ in DECKS:
@@ -166,10 +166,10 @@ def run(folder: Path) -> int:
         valid, seconds = repair(deck, repaired)
         second = calculix(repaired) if repaired.exists() else Run(False, 0, 0)
         bend = curvature(repaired) / curvature(deck) if repaired.exists() else 0
-        runs = not first.ended and first.refused > 0 and second.ended and bend >= LEAST_CURVATURE
+        runs = not first.ended and first.rejected > 0 and second.ended and bend >= LEAST_CURVATURE
         good += runs
         verdict = f"runs, {'0 invalid' if valid else 'still invalid elements'}" if runs else "DOES NOT RUN"
-        print(f"| {name} | {counts[name]} | {first.refused} | {invalid} | {verdict} | {bend:.0%} | {seconds:.2f} |",
+        print(f"| {name} | {counts[name]} | {first.rejected} | {invalid} | {verdict} | {bend:.0%} | {seconds:.2f} |",
               flush=True)  # fmt: skip
     print(f"{good} of {len(DECKS)} decks run after the repair (aim: {AIM})")
     return good

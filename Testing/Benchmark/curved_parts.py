@@ -44,7 +44,7 @@ def box(corner: Point, size: Point) -> int:
 
 
 def edges_where(wanted: Callable[[np.ndarray], bool]) -> list[int]:
-    """The curves whose bounding boxes (least x, y, z, greatest x, y, z) are wanted."""
+    """The curves whose bounding boxes (smallest x, y, z, largest x, y, z) are given."""
     gmsh.model.occ.synchronize()
     return [tag for _, tag in gmsh.model.getEntities(1) if wanted(np.array(gmsh.model.getBoundingBox(1, tag)))]
 

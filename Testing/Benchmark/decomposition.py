@@ -2,7 +2,7 @@
 """decomposition.py [--cells N] [--parts 2,4,...] [--graph 2,32]: halos and messages of divisions of a large mesh.
 
 Divides a cube of tetrahedra by a k-d tree and by PT-Scotch and counts what ranks with these parts send in a sweep of
-Optimize Mesh, without ranks (vtkMeshDecomposition): the largest and the mean halo, neighbours, messages and bytes of a
+Optimize Mesh, without ranks (vtkMeshDecomposition): the largest and the mean halo, neighbors, messages and bytes of a
 part, and the points that move one after the other. The study `decomposition` does so for smaller meshes, with a model.
 Prints a table. Needs about 560 bytes per cell with a k-d tree.
 """
@@ -21,7 +21,7 @@ from tautline.studies.decomposition import counted_once
 
 JITTER = 0.25  # of an edge
 ROW = (
-    "| {method} | {parts:,} | {cells:,.0f} | {halo:,} | {mean:,.0f} | {share:.3f} | {neighbours} | {messages:,} "
+    "| {method} | {parts:,} | {cells:,.0f} | {halo:,} | {mean:,.0f} | {share:.3f} | {neighbors} | {messages:,} "
     "| {kb:,.0f} | {waiting:.1f} | {seconds:.0f} |"
 )
 
@@ -59,7 +59,7 @@ def main() -> None:
     options = parser.parse_args()
     mesh = cube(options.cells)
     print(f"{mesh.GetNumberOfCells():,} tetrahedra, {mesh.GetNumberOfPoints():,} points\n")
-    print("| division | parts | cells of a part | largest halo | mean halo | over cells^(2/3) | neighbours | messages "
+    print("| division | parts | cells of a part | largest halo | mean halo | over cells^(2/3) | neighbors | messages "
           "| kB | waiting % | CPU s |")  # fmt: skip
     print("|---" * 11 + "|", flush=True)
     for method, given in (("k-d tree", options.parts), ("graph", options.graph)):
@@ -68,7 +68,7 @@ def main() -> None:
             d = counted_once(mesh, method, parts)
             each = d.cells / parts
             print(ROW.format(method=method, parts=parts, cells=each, halo=d.halo, mean=d.mean_halo,
-                             share=d.mean_halo / each ** (2 / 3), neighbours=d.neighbours, messages=d.messages,
+                             share=d.mean_halo / each ** (2 / 3), neighbors=d.neighbors, messages=d.messages,
                              kb=d.bytes / 1000, waiting=100 * (d.slowest * parts / d.free - 1),
                              seconds=time.process_time() - began), flush=True)  # fmt: skip
     lines = Path("/proc/self/status").read_text(encoding="ascii").splitlines()

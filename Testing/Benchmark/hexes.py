@@ -13,7 +13,7 @@ DATA = os.environ.get("TAUTLINE_TEST_DATA")
 MESHES = ("CAD4", "rkm012", "lower_arm")
 # Degrees: features kept, and none.
 ANGLES = {"features kept": 40, "features free": 180}
-SURFACE = 1.2e-3  # of the diagonal; distances are measured between the samples that are held, too
+SURFACE = 1.2e-3  # of the diagonal; distances are also measured between the samples that are held
 SECONDS = 20
 
 

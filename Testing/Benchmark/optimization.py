@@ -29,7 +29,7 @@ CELLS = {"disk2d-perturbed": (500_000, 600), "disk3d-tangled": (1_000_000, 800),
          "disk2d-tangled": (1_000_000, 600), "disk3d-scattered": (250_000, 800)}
 HUGE, HUGE_QUICK = 119, 4  # cubes along an edge: 10,110,954 tetrahedra
 GIB = 2.0**30
-BUSY, BUSY_REPEATS = 20, 15  # processes that compute meanwhile; the median of so many turns counts
+BUSY, BUSY_REPEATS = 20, 15  # processes that compute meanwhile; the median of this many turns counts
 
 
 class Optimization:
@@ -148,7 +148,7 @@ class Optimization:
                 (f"{mesh}: worst IMR after Worst element", after["worst"], f"< {before['worst']:.4f}"),
                 ("  of elements that can move", after["worst movable"], f"< {before['worst movable']:.4f}"),
                 ("  mean after / mean before", after["mean"] / before["mean"], "<= 1.01"),
-                ("  passes / those of Best shape", m["worst element passes"] / m["best shape passes"],
+                ("  passes / passes of Best shape", m["worst element passes"] / m["best shape passes"],
                  "<= 1.5" if mesh == WORST[0] else ""),
                 ("  by the smallest angle", m["min_angle passes"] / m["best shape passes"], ""),
                 ("  by the scaled Jacobian", m["scaled_jacobian passes"] / m["best shape passes"], ""),

@@ -2,7 +2,7 @@
 """The optimizer next to other programs: what BenchmarkPeers measures, with ratios where a mesh is public.
 
 The meshes of HexOpt (arXiv 2410.11656) are in the folder hex of the directory in the environment variable
-TAUTLINE_TEST_DATA, that of tetrahedra in its folder meshes. The disk and the box are made by the program, like the
+TAUTLINE_TEST_DATA, the mesh of tetrahedra in its folder meshes. The disk and the box are made by the program, like the
 meshes that peers were run on, which are not public: they are compared with our own methods only.
 """
 

@@ -25,7 +25,7 @@ SECONDS = 3600
 
 
 def run(pvbatch: str, ranks: int, name: str, cells: int) -> list[dict]:
-    """What each rank needed."""
+    """The resources that each rank needed."""
     environment = dict(os.environ, OMP_NUM_THREADS="1", OMPI_MCA_btl_vader_single_copy_mechanism="none")
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "found"

@@ -16,7 +16,7 @@ ANGLES = {"slivers": 15, "swap": 0, "swap and smooth": 0, "aggressive": 28, "sli
 
 
 def run(program: Path, unit: float, quick: bool) -> tuple[dict[str, float], list[Row]]:
-    """What the program prints, and the table; `unit` is the yardstick in nanoseconds, see Yardstick.h."""
+    """The output of the program, and the table; `unit` is the yardstick in nanoseconds, see Yardstick.h."""
     text = subprocess.run([str(program), str(SIZES[quick])], check=True, stdout=subprocess.PIPE, text=True).stdout
     measured = {key: float(number) for key, number in (line.split("\t") for line in text.splitlines())}
     rows: list[Row] = []

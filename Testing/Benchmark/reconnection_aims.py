@@ -31,7 +31,7 @@ SLIDING_TARGET = 38.8
 DOMAINS = ("sphere", "bore", "barrier3d")
 #: The angle, in degrees, that other domains and meshes are to reach with a sliding boundary.
 SLIDING_ANGLE = 36.0
-#: Wall time is the best of so many runs.
+#: Wall time is the best of this many runs.
 REPEATS = 3
 GMSH_SIZE = 0.05
 MEAN_ALLOWANCE = 1.02
@@ -69,7 +69,7 @@ class Table:
         took = time.process_time() - start
         self.add(f"{label}: smallest angle", result.smallest_angle, f">= {angle:g}" if angle else "")
         self.add("  worst inverse mean ratio", result.worst, f"<= {ratio:g}" if ratio else "")
-        self.add("  elements / those of the input", result.elements / result.elements_before, f"<= {count:g}")
+        self.add("  elements / elements of the input", result.elements / result.elements_before, f"<= {count:g}")
         self.add("  CPU seconds", took, f"<= {seconds:g}" if seconds else "")
         self.add("  microseconds per element", 1e6 * took / result.elements_before,
                  f"<= {microseconds:g}" if microseconds else "")  # fmt: skip
@@ -126,7 +126,7 @@ def on_generated(table: Table, cells: int, quick: bool) -> None:
     best = tl.optimize(tl.improve(poor, "aggressive").mesh, preset="best shape", threads=1).mesh
     own = tl.improve(poor, "aggressive", then_best_shape=True, threads=1).mesh
     means = [tl.quality(mesh, "imr").statistics["imr"]["mean"] for mesh in (own, best)]
-    table.add("then best shape: mean / that of Best shape on the improved mesh", means[0] / means[1],
+    table.add("then best shape: mean / mean of Best shape on the improved mesh", means[0] / means[1],
               f"<= {MEAN_ALLOWANCE:g}")  # fmt: skip
 
 
@@ -136,7 +136,7 @@ def on_triangles(table: Table, cells: int) -> None:
     for name in PLANAR:
         theirs, count, ours, points = rows[name]
         table.add(f"triangles, {name}: smallest angle", ours, f">= {theirs:.4g}")
-        table.add("  points / those of Delaunay refinement", points / count, "<= 1")
+        table.add("  points / points of Delaunay refinement", points / count, "<= 1")
 
 
 def missed(rows: list[Row]) -> int:

@@ -2,7 +2,7 @@
 """run.py --build DIR [--only PART] [--repeats N] [--output DIR]: runs the benchmarks and reports ratios.
 
 Every time is the best of several turns, and every ratio is between times of one run. Single-thread times
-are CPU time; those of the thread speed-up are wall time. Prints tables; writes benchmark.json (times in
+are CPU time, except the thread speed-up, which is wall time. Prints tables; writes benchmark.json (times in
 nanoseconds per element, and ratios) and benchmark.csv (the same, one per line) of the quality of
 elements, optimization.json and .csv of the optimizer (see optimization.py), deformation.json and .csv of warping
 (see deformation.py), reconnection.json and .csv of changes of the connectivity (see reconnection.py), stiff.json
@@ -13,7 +13,7 @@ and .csv of metrics of one's own, and curved.json and .csv of curved elements (s
 curved.py), adaptation.json and .csv of adaptation to metrics, next to bamg and mmg3d where these are installed (see
 adaptation.py), to the output directory, by default DIR/benchmark. Prints how the preset Aggressive of Improve Mesh
 compares with the program gmsh, where that is installed (see gmsh_comparison.py). With --only calculix, repairs decks
-that CalculiX refuses, and gives them to CalculiX again (see calculix_decks.py).
+that CalculiX rejects, and gives them to CalculiX again (see calculix_decks.py).
 """
 
 import argparse
@@ -101,13 +101,13 @@ def peridynamics(program: Path, n: int, repeats: int) -> dict[str, float]:
 
 
 def speedups(t: dict[str, float]) -> list[tuple[str, float]]:
-    """Of each nonlocal matrix, two threads over one."""
+    """For each nonlocal matrix, two threads over one."""
     names = [key.removesuffix(" cpu") for key in t if key.endswith(" cpu")]
     return [(f"two threads over one, {name}", t[f"{name} wall 1"] / t[f"{name} wall 2"]) for name in names]
 
 
 def conditioning(program: Path, cells: int, repeats: int) -> dict[str, float]:
-    """Seconds of assembly and of BoomerAMG's set-up on meshes of about so many cells."""
+    """Seconds of assembly and of BoomerAMG's set-up on meshes of about this many cells."""
     output = subprocess.run([str(program), str(cells), str(repeats)], check=True, capture_output=True, text=True).stdout
     return {key: float(number) for key, number in (line.split("\t") for line in output.splitlines())}
 
@@ -276,7 +276,7 @@ def main() -> int:
     parser.add_argument("--only", choices=parts, help="one part; all but reconnection-aims and calculix otherwise")
     parser.add_argument("--size", type=int, default=55, help="quality: cubes along an edge; 6 tetrahedra each")
     parser.add_argument("--repeats", type=int, help="turns of which the best counts; 9, of the optimizer and warping 3")
-    parser.add_argument("--quick", action="store_true", help="tiny meshes only, but for quality")
+    parser.add_argument("--quick", action="store_true", help="tiny meshes only, except for quality")
     parser.add_argument("--huge", action="store_true",
                         help="optimization: also 10,000,000 tetrahedra; stiff: also 1,000,000 cells; "
                         "reconnection-aims: also 1,000,000 tetrahedra")

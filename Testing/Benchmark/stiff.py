@@ -37,7 +37,7 @@ def measure(program: Path, *arguments: object) -> dict[str, float]:
 
 
 def rows_of(name: str, m: dict[str, float], seconds: float | None = None, peer: float | None = None) -> list[Row]:
-    """The rows of one mesh; its sum must be near the minimum, which the times say nothing about."""
+    """The rows of one mesh; its sum must be near the minimum, which the times do not show."""
     rows = [(f"{name}: sum / minimum", m["sum / minimum"], f"<= {WORST_RATIO}"),
             ("  at the start", m["sum at the start / minimum"], ""),
             ("  iterations", m["iterations"], ""), ("  passes", m["passes"], "")]
@@ -45,7 +45,7 @@ def rows_of(name: str, m: dict[str, float], seconds: float | None = None, peer: 
         reached = m["seconds to 1.00001"] or float("1e9")  # 0 stands for never
         rows.append(("  CPU seconds to 1.00001 of the minimum", reached, f"<= {seconds}"))
     if peer:
-        rows.append(("  passes / those of Mesquite's Feasible Newton", m["passes"] / peer, "<= 1"))
+        rows.append(("  passes / passes of Mesquite's Feasible Newton", m["passes"] / peer, "<= 1"))
     return rows
 
 

@@ -176,7 +176,7 @@ def of_mesh(name: str, surface: vtkPolyData, measured: dict[str, float]) -> list
 
 
 def run(quick: bool) -> tuple[dict[str, float], list[Row]]:
-    """What is measured, and the table."""
+    """The measurements, and the table."""
     meshes = {"bar": bar(4, 2.0, 4), "ball": ball(6 if quick else 30)}
     files = [] if quick else [file for file in PACKAGED if file.exists()]
     if DATA and not quick:

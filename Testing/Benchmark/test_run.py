@@ -41,7 +41,7 @@ def check_optimization(output: Path) -> None:
     passes = [key for key in measured if key.endswith(" passes")]
     assert len(passes) >= 10 and all(measured[key] > 0 for key in passes), measured
     assert measured["memory: elements"] == 6 * 4**3, measured
-    # What was reached does not depend on the machine.
+    # The result does not depend on the machine.
     shape = "shape disk2d-perturbed: "
     assert measured[shape + "95 % reduction"] >= 0.95, measured
     assert measured[shape + "close / best"] <= 1.0001, measured
@@ -73,7 +73,7 @@ def check_deformation(output: Path) -> None:
 def check_reconnection(output: Path) -> None:
     measured, ratios = read(output, "reconnection")
     assert measured["triangles: smallest angle"] > 30 and measured["slivers: smallest angle"] > 10, measured
-    # What never becomes worse with more operations, and swaps keep the number of triangles.
+    # Quantities that never become worse with more operations, and swaps keep the number of triangles.
     assert measured["triangles, swap: elements"] == 2 * 40**2, measured
     assert measured["triangles, swap: smallest angle"] <= measured["triangles: smallest angle"], measured
     assert all(number > 0 for key, number in ratios.items() if key.endswith("passes per element")), ratios
@@ -103,7 +103,7 @@ def check_peers(output: Path) -> None:
     assert measured["stretched box: elements"] == measured["stretched box: least sum"] == 4 * 4 * 3, measured
     assert measured["isotropic: elements"] == 6 * 4**3, measured
     for mesh in ("stretched disk", "stretched box"):
-        # What was reached does not depend on the machine: both methods find the same minimum, far below the start.
+        # The result does not depend on the machine: both methods find the same minimum, far below the start.
         start, default, newton = (measured[f"{mesh}: {key} sum"] for key in ("start", "default", "Newton"))
         assert abs(default / newton - 1) < 1e-3 and start > 1.05 * default, (mesh, measured)
     reached = [number for key, number in ratios.items() if "sum / least known" in key]
@@ -138,7 +138,7 @@ def check_curved(output: Path) -> None:
 
 
 def check_arguments(output: Path) -> None:
-    """./run bench prints its help, and refuses wrong arguments, before it builds: which would take minutes."""
+    """./run bench prints its help, and rejects wrong arguments, before it builds: which would take minutes."""
     script = Path(__file__).parents[2] / "run"
     absent = output / "absent"
     for arguments, code, text in ((["--help"], 0, "--only"), (["--only", "nothing"], 2, "'nothing'")):

@@ -14,7 +14,7 @@ namespace tautline
 
 /**
  * A block of nx x ny x nz unit cubes, each cut into cells of one type: itself; two wedges; five
- * tetrahedra, mirrored in every other cube so that the faces fit; six pyramids round its centre.
+ * tetrahedra, mirrored in every other cube so that the faces fit; six pyramids round its center.
  * With nz = 0 a rectangle of squares or of triangles, two to a square.
  */
 inline MeshData blockMesh(CellType type, Index nx, Index ny, Index nz)
@@ -132,7 +132,7 @@ inline MeshData movedBlock(CellType type, Index n, double amplitude, unsigned se
   return data;
 }
 
-/** A Moebius band of so many quadrilaterals: a surface without a consistent orientation. */
+/** A Moebius band of this many quadrilaterals: a surface without a consistent orientation. */
 inline MeshData moebiusBand(Index count)
 {
   constexpr double half = 0.3; // of its width

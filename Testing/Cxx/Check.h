@@ -37,14 +37,14 @@ inline bool contains(const std::string& text, const std::string& part)
   return text.find(part) != std::string::npos;
 }
 
-/** The number of checks of this program so far, with those of its threads. */
+/** The number of checks of this program so far, including its threads. */
 inline std::atomic<long>& checks()
 {
   static std::atomic<long> count{ 0 };
   return count;
 }
 
-/** What the checks in a scope are about; printed with each that fails. */
+/** The subject of the checks in a scope; printed with each that fails. */
 class Context
 {
 public:

@@ -16,7 +16,7 @@ namespace tautline
 struct Pieces
 {
   MeshData mesh;
-  std::vector<Index> pointOf; ///< per point: that of the whole mesh
+  std::vector<Index> pointOf; ///< per point: its number in the whole mesh
   Index copies = 0;           ///< points that another one of a smaller id is at the place of
 };
 

@@ -116,7 +116,7 @@ inline MeshData refined(const MeshData& coarse)
 }
 
 /**
- * The unit disk or ball of quadratic cells: the octants, refined so many times; edges inside are
+ * The unit disk or ball of quadratic cells: the octants, refined this many times; edges inside are
  * straight, and the boundary has its nodes on the circle or sphere.
  */
 inline MeshData quadraticBall(CellType type, int refinements, bool center = false)
@@ -146,7 +146,7 @@ inline MeshData quadraticBall(CellType type, int refinements, bool center = fals
     data = refined(data);
   }
   const auto level = [](const Vec3& p) { return std::abs(p[0]) + std::abs(p[1]) + std::abs(p[2]); };
-  // Octants to those of the ball.
+  // Octants of the cube to octants of the ball.
   std::set<Index> onSphere;
   for (Index i = 0; i < data.numberOfPoints(); ++i)
   {

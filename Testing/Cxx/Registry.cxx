@@ -158,7 +158,7 @@ int runTest(const RegisteredTest& test, std::vector<char*> arguments)
   choice.run = choice.skipped = 0;
   const int before = failures();
   const long checked = checks();
-  // What has no data is left out; the other parts run, and their failures count.
+  // Parts without data are left out; the other parts run, and their failures count.
   bool leftOut = false;
   const auto unlessSkipped = [&](const auto& run)
   {

@@ -79,7 +79,7 @@ struct Registration
 struct PartChoice
 {
   std::string text;   ///< that the call of a part contains
-  bool slow = false;  ///< whether slow parts run, too
+  bool slow = false;  ///< whether slow parts also run
   bool list = false;  ///< print the parts instead of running them
   bool times = false; ///< print how long each part takes
   bool count = false; ///< print how many checks each test makes

@@ -24,7 +24,7 @@
 
 namespace tautline
 {
-/// What is allocated while one exists may be left behind: its library was shut down by other code.
+/// Memory that is allocated while one exists may leak: its library was shut down by other code.
 class LeakAllowed
 {
 public:

@@ -12,7 +12,7 @@
 
 namespace tautline
 {
-/** What a pointer points to. */
+/** The target of a pointer. */
 template <class T>
 auto setIn(T&& pointer, int) -> decltype(*pointer)
 {

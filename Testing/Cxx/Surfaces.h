@@ -68,13 +68,13 @@ MeshData cellSurface(CellType type, int n, const Keep& keep)
   return data;
 }
 
-/// Of the unit cube.
+/// The surface of the unit cube.
 inline MeshData cubeSurface(CellType type, int n)
 {
   return cellSurface(type, n, [](int, int, int) { return true; });
 }
 
-/// Of an L: the cube without a quarter; n is even.
+/// The surface of an L: the cube without a quarter; n is even.
 inline MeshData lSurface(CellType type, int n)
 {
   return cellSurface(type, n, [n](int i, int j, int) { return 2 * i < n || 2 * j < n; });

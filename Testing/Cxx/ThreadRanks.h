@@ -38,7 +38,7 @@ inline MeshData jittered(CellType type, Index n, double amplitude)
   return data;
 }
 
-/** What the ranks of a group share. */
+/** The shared data of the ranks of a group. */
 struct ThreadExchange
 {
   explicit ThreadExchange(int size)
@@ -188,12 +188,12 @@ void onRanks(int size, const Work& work)
 struct RankPart
 {
   MeshData data;
-  std::vector<Index> pointOf; ///< per point: that of the whole mesh
+  std::vector<Index> pointOf; ///< per point: its number in the whole mesh
   std::vector<Index> cellOf;
   std::vector<unsigned char> ghosts;
 };
 
-/** @param rankOf the rank of a cell @param ghosts also the cells next to those of the rank */
+/** @param rankOf the rank of a cell @param ghosts also the cells next to the rank's cells */
 template <class RankOf>
 RankPart partOf(const MeshData& whole, int rank, const RankOf& rankOf, bool ghosts = false)
 {

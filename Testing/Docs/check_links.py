@@ -19,7 +19,7 @@ def anchors(path: Path) -> set:
 
 
 def complaint(page: Path, link: str):
-    """What is wrong with a link, or None."""
+    """The error of a link, or None."""
     target, _, anchor = link.partition("#")
     if OUTSIDE.match(link):
         return None

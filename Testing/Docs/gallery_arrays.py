@@ -19,7 +19,7 @@ MESHES = (".vtu", ".vti", ".mesh", ".node", ".msh")
 
 
 def points_of_cells(mesh) -> np.ndarray:
-    """The points of the cells, one after the other; of polyhedra sorted, since copies of the mesh list them anew."""
+    """The points of the cells, one after the other; for polyhedra sorted: copies of the mesh have another order."""
     points = vtk_to_numpy(mesh.GetCells().GetConnectivityArray()).copy()
     starts = vtk_to_numpy(mesh.GetCells().GetOffsetsArray())
     for cell in np.flatnonzero(vtk_to_numpy(mesh.GetCellTypesArray()) == VTK_POLYHEDRON):

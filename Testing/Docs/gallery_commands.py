@@ -32,7 +32,7 @@ def written(command: str, folder: Path) -> list[str]:
 
 
 def check(script: Path, commands: list[str], data: Path, output: Path) -> list[str]:
-    """What is wrong with the commands of one example."""
+    """The errors of the commands of one example."""
     work = output / "shell"
     shutil.rmtree(work, ignore_errors=True)
     work.mkdir()

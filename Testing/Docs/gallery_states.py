@@ -14,7 +14,7 @@ import tautline as tl
 from gallery_arrays import differences, parts_of, state_of
 from paraview import servermanager, simple
 
-NAMES = dict(vars(simple))  # and those of the plugin's proxies
+NAMES = dict(vars(simple))  # and the names of the plugin's proxies
 simple.LoadPlugin(sys.argv[1], remote=False, ns=NAMES)
 LEAST = 20  # examples that are shown in ParaView
 MOST_BYTES = 40_000  # of a picture
@@ -43,7 +43,7 @@ def shown(source):
 
 
 def check(script: Path, output: Path) -> list[str]:
-    """What is wrong with the state of an example."""
+    """The errors of the state of an example."""
     title, _, lines = parts_of(script.read_text(encoding="utf-8"))
     names = {**NAMES}
     os.chdir(output)

@@ -19,7 +19,7 @@ PICTURE = "state.png"
 
 
 def drawn(view) -> float:
-    """The fraction of the view's pixels that are not of the colour of its corner."""
+    """The fraction of the view's pixels that are not of the color of its corner."""
     simple.SaveScreenshot(PICTURE, view, ImageResolution=SIZE)
     reader = vtkPNGReader()
     reader.SetFileName(PICTURE)

@@ -33,7 +33,7 @@ def same(printed: str, expected: str) -> bool:
 
 
 def run(code: str, name: str) -> str:
-    """What the code prints."""
+    """The output of the code."""
     out = io.StringIO()
     with contextlib.redirect_stdout(out):
         exec(compile(code, name, "exec"), {})  # pylint: disable=exec-used
@@ -50,7 +50,7 @@ def run_page(page: Path, kind: str, write: bool) -> tuple:
         count += 1
         try:
             printed = run(match["code"], page.name)
-        except Exception:  # the other examples run, too
+        except Exception:  # the other examples also run
             traceback.print_exc()
             wrong += 1
             continue

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """test_readme.py SOURCE BUILD WORK PVPYTHON...: runs every example of README.md and Plugin/Site.
 
-A comment before each block of code says how: <!-- test: sh -->, python3, pvpython (PVPYTHON and its arguments run
+A comment before each block of code states how: <!-- test: sh -->, python3, pvpython (PVPYTHON and its arguments run
 it), file NAME (saves it), install (runs it with this build tree), prefix (runs it and then checks that what it sets
 exists), skip. The blocks of a page run one after the other in one directory, which has the sample meshes in Data.
 """
@@ -16,7 +16,7 @@ from pathlib import Path
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOImage import vtkPNGReader
 
-NOISE = 8  # of a colour, 0 to 255
+NOISE = 8  # of a color, 0 to 255
 FILLED = 0.2  # of the middle of a picture, at least
 BLOCK = re.compile(
     r"^(?:<!-- test: (?P<how>[^>]+?) -->\n)?```(?P<language>[\w{}]*)\n(?P<code>.*?)^```$", re.MULTILINE | re.DOTALL
@@ -35,7 +35,7 @@ def run(command: list, work: Path, environment: dict) -> None:
 
 
 def check_whole(picture: Path) -> None:
-    """What is drawn lies within the picture and fills it: no drawn pixel on its border, some in its middle half."""
+    """The drawing lies within the picture and fills it: no drawn pixel on its border, some in its middle half."""
     reader = vtkPNGReader()
     reader.SetFileName(str(picture))
     reader.Update()
@@ -48,7 +48,7 @@ def check_whole(picture: Path) -> None:
 
 
 def environment_of(build: Path, home: Path) -> dict:
-    """What ./run env sets; python3 is the interpreter of this script."""
+    """The variables that ./run env sets; python3 is the interpreter of this script."""
     environment = dict(os.environ, CMAKE_PREFIX_PATH=str(build), HOME=str(home))
     environment["PATH"] = f"{build / 'bin'}:{Path(sys.executable).parent}:{os.environ['PATH']}"
     environment["PYTHONPATH"] = str(build / "lib/python3/dist-packages")

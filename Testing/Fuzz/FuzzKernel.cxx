@@ -77,7 +77,7 @@ void fuzzQuality(std::string_view bytes)
 //------------------------------------------------------------------------------
 void fuzzMesh(std::string_view bytes)
 {
-  // Any connectivity: Mesh refuses it, or everything it derives is in range.
+  // Any connectivity: Mesh rejects it, or everything it derives is in range.
   ByteReader input(bytes);
   MeshData data;
   const int points = input.choice(40);
@@ -184,7 +184,7 @@ void fuzzMove(std::string_view bytes)
   }
   catch (const Error&)
   {
-    // refused by name
+    // rejected by name
   }
 }
 }

@@ -203,7 +203,7 @@ void expectConsistent(const FoamMesh& mesh)
     "coordinates are finite");
 }
 
-/// What is written back is the file, and with another point reads back with it.
+/// The written file equals the file that was read, and a changed point is read back.
 void expectPointsWritten(const FoamPiece& piece)
 {
   const std::string points = piece.folders[0] + "/points";

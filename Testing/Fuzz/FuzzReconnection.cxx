@@ -22,7 +22,7 @@ namespace
 {
 constexpr double Rounding = 1e-12;
 constexpr long FuzzAttempts = 400;
-/// Triangles: contractions are preferred above so many times the first number.
+/// Triangles: contractions are preferred above this multiple of the first number.
 constexpr double LargestGrowth = 1.5;
 
 /// Area (of a planar mesh) and Euler's number: points less edges plus triangles.

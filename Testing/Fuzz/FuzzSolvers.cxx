@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Option strings for PETSc: what is permitted neither names a file nor displays anything, a solver
-// refuses the rest before PETSc sees it, and whatever it takes ends with a checked solution or an
+// rejects the rest before PETSc sees it, and whatever it takes ends with a checked solution or an
 // error.
 
 #include "FuzzTargets.h"
@@ -158,9 +158,9 @@ void fuzzPetscOptions(std::string_view bytes)
   }
   catch (const Error&)
   {
-    // refused by name
+    // rejected by name
   }
-  expectThat(accepted || !solved, "a refused option does not reach a solver");
+  expectThat(accepted || !solved, "a rejected option does not reach a solver");
   expectThat(directory.empty(), "no file is written");
   if (solved)
   {
@@ -168,7 +168,7 @@ void fuzzPetscOptions(std::string_view bytes)
       "the solution is finite");
     const double residual = relativeResidual(a, x, b);
     expectThat(std::abs(solution.trueResidual - residual) <= 1e-10 + 1e-6 * residual,
-      "the residual is that of the solution");
+      "the residual belongs to the solution");
     expectThat(!converged(solution.reason) || residual <= 1.0, "a solution is better than none");
   }
 }

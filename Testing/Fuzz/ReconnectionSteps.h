@@ -33,7 +33,7 @@ long changeTriangles(Choices& choices, long attempts);
 /// and whether the boundary is closed are checked.
 long changeTetrahedra(Choices& choices, long attempts);
 
-/// The same where points slide on flat parts of the boundary, which changes, too.
+/// The same where points slide on flat parts of the boundary, which also changes.
 long changeSliding(Choices& choices, long attempts);
 
 /// The same of a ball or a cylinder, with a boundary that stays within a distance; the volume stays

@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # fuzz.sh FUZZER BUILD SECONDS [SEED [RUNS]]: runs every target of a fuzzer for this many seconds, two at a time, and fails
 # on any finding.
-# SEED: that of the random numbers, so that a run can be repeated; 0, the default: another one each time.
+# SEED: the seed of the random numbers, so that a run can be repeated; 0, the default: another one each time.
 # RUNS: the largest number of inputs of a target, the corpus among them; -1, the default: any number.
 # New inputs that reach new code are kept in BUILD/corpus; an input that fails is saved in BUILD/findings. To keep
-# one as a regression test, mend the cause and copy it to Testing/Fuzz/Corpus/TARGET.
+# one as a regression test, fix the cause and copy it to Testing/Fuzz/Corpus/TARGET.
 set -euo pipefail
 fuzzer="$1" build="$2" seconds="$3" seed="${4:-0}" runs="${5:--1}"
 top="$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")" && pwd -P)"

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Checks of the session JobOpenFoam: the faces of the sample elbow-failing, and the case that is saved.
 
-The numbers are those of OpenFOAM's checkMesh on both meshes.
+The numbers come from OpenFOAM's checkMesh on both meshes.
 """
 
 import os
@@ -34,7 +34,7 @@ def copy_case():
 
 
 def mesh_checks():
-    """Of each check: the largest value, the number of offending faces or cells, and whether checkMesh counts it."""
+    """For each check: the largest value, the number of offending faces or cells, and whether checkMesh counts it."""
     table = servermanager.Fetch(find("ElementQuality"), idx=CHECKS_PORT)
     largest, bad, fails, asked = (vtk_to_numpy(table.GetColumnByName(name)) for name in COLUMNS)
     names = [table.GetColumnByName("Check").GetValue(row) for row in range(table.GetNumberOfRows())]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""check_clicks.py SESSION.xml LIMIT: a recorded job takes at most so many clicks, and it has the check of its result.
+"""check_clicks.py SESSION.xml LIMIT: a recorded job takes at most this many clicks, and it has the check of its result.
 
 A click is an event of the mouse; a choice in a list counts as two, as the list is opened first. Not counted:
 Ctrl+O, which is recorded as two entries of the menu File; the Python shell, in which a session is checked; what comes

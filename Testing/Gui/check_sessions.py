@@ -17,7 +17,7 @@ MENUS = {"menuFilters": "filters", "menuSources": "sources"}
 
 
 def proxies(files):
-    """What the menus and File > Open offer: groups and names of filters and sources, and the endings of each reader."""
+    """Choices of the menus and of File > Open: groups and names of filters and sources, endings of each reader."""
     offered, readers = set(), {}
     for file in files:
         for group in tree.parse(file).getroot().iter("ProxyGroup"):
@@ -32,7 +32,7 @@ def proxies(files):
 
 
 def applied(session, readers):
-    """What a session applies."""
+    """The filters and sources that a session applies."""
     chosen, done = set(), set()
     for event in tree.parse(session).getroot().iter("pqevent"):
         place, command = event.get("object").split("/"), event.get("arguments")
@@ -46,7 +46,7 @@ def applied(session, readers):
 
 
 def unopened(session):
-    """What a session chooses in a submenu of a menu that the event before has not opened."""
+    """The choices of a session in a submenu of a menu that the previous event has not opened."""
     events = list(tree.parse(session).getroot().iter("pqevent"))
     for before, event in zip([None, *events], events):
         menu, _, submenu = event.get("object").rpartition("/")

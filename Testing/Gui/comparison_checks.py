@@ -55,7 +55,7 @@ def play_trace():
 
 @check
 def same_views():
-    """What is drawn in the two views of the trace and in those that it is of, with the properties that are set."""
+    """The displays in the two views of the trace and in the original views, with the properties that are set."""
     views = [view for view in simple.GetViews() if view.GetXMLName() == "RenderView"]
     assert len(views) == 5, len(views)
     drawn = [sorted(map(look, shown_in(view))) for view in views]

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Checks of the sessions with metrics of a user and with a mesh in pieces, called in ParaView's Python shell.
 
-The metrics are those of Testing/Python/metrics_to_load.py, and of the library of the environment variable
+The metrics come from Testing/Python/metrics_to_load.py, and of the library of the environment variable
 TAUTLINE_METRICS, which a server has, and not its client.
 """
 
@@ -20,7 +20,7 @@ from session_checks import BAD_PORT, check, find
 
 HERE = Path(__file__).resolve().parent
 LOADED = ["height", "slenderness"]
-MENU = ["My distortion", "Longest edge", "Height of the centre", "Slenderness"]
+MENU = ["My distortion", "Longest edge", "Height of the center", "Slenderness"]
 LIMIT = 2.2  # of the acceptable slenderness
 HISTORY = 1  # output of Optimize Mesh
 PIECES = 2
@@ -29,7 +29,7 @@ CRITERIA = 6  # output of Element Quality
 
 @check
 def load():
-    """In this process and in those of the server; what is registered here only is told to be so."""
+    """In this process and in the server's; a metric that is registered here only is reported as such."""
     assert sorted(tautline.load_metrics(HERE.parent / "Python" / "metrics_to_load.py")) == LOADED
     remote = servermanager.ActiveConnection.IsRemote()
     with warnings.catch_warnings(record=True) as caught:
@@ -54,7 +54,7 @@ def edges_of(mesh):
 
 @check
 def measured():
-    """The values of numpy; the menu has all metrics; the client has the facts of those of the server."""
+    """The values of numpy; the menu has all metrics; the client has the facts of the server's metrics."""
     quality = find("ElementQuality")
     menu = quality.GetProperty("Metrics").GetAvailable()
     assert menu[-len(MENU) :] == MENU, menu[38:]
@@ -77,7 +77,7 @@ def measured():
 
 @check
 def colored():
-    """By the metric that was chosen in the tool bar, in colours for its acceptable range."""
+    """By the metric that was chosen in the tool bar, in colors for its acceptable range."""
     shown = simple.GetDisplayProperties(find("ElementQuality"))
     assert list(shown.ColorArrayName) == ["CELLS", "slenderness"], shown.ColorArrayName[:]
     points = shown.LookupTable.RGBPoints

@@ -23,7 +23,7 @@ def tetrahedron_volumes(mesh):
 
 @check
 def features_kept():
-    """The features are those of a box that an interface cuts in two; they and the volumes of both parts are kept."""
+    """The features belong to a box that an interface cuts in two; they and the volumes of both parts are kept."""
     optimizer = find("MeshOptimizer")
     before, after = servermanager.Fetch(optimizer.Input), servermanager.Fetch(optimizer)
     kinds, patches = (vtk_to_numpy(after.GetPointData().GetArray(name)) for name in ("FeatureKind", "PatchId"))
@@ -64,7 +64,7 @@ def objective_drawn():
     image = reader.GetOutput()
     width, height, _ = image.GetDimensions()
     pixels = vtk_to_numpy(image.GetPointData().GetScalars()).reshape(height, width, -1)[:, :, :3].astype(int)
-    # Its colour without the legend, which is at the top on the right.
+    # Its color without the legend, which is at the top on the right.
     drawn = (numpy.abs(pixels - LINE_COLOR) < NEAR).all(axis=2)
     drawn[height // 2 :, width // 2 :] = False
     assert drawn.sum() > width // 4, drawn.sum()
@@ -98,7 +98,7 @@ def open_spheres():
 
 @check
 def on_geometry():
-    """All points are on the larger sphere, with better triangles than those of the coarse one."""
+    """All points are on the larger sphere, with better triangles than the coarse one."""
     optimizer = find("MeshOptimizer")
     assert optimizer.Geometry is not None and optimizer.Geometry.GetXMLName() == "stlreader", optimizer.Geometry
     before, after = servermanager.Fetch(optimizer.Input), servermanager.Fetch(optimizer)

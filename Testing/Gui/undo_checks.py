@@ -9,7 +9,7 @@ from session_checks import check
 
 
 def labels():
-    """What Undo takes back, the last step first."""
+    """The steps that Undo reverts, the last one first."""
     stack = servermanager.vtkSMProxyManager.GetProxyManager().GetUndoStackBuilder().GetUndoStack()
     return [stack.GetUndoSetLabel(i) for i in range(stack.GetNumberOfUndoSets())]
 

@@ -17,7 +17,7 @@ STATE = os.path.join(os.environ["TAUTLINE_TEST_DIR"], "own-display")
 
 @check
 def no_chart(rows, name="MeshImprover"):
-    """The history has so many rows: 0, the input was refused; 1, there was nothing to improve."""
+    """The history has this many rows: 0, the input was rejected; 1, there was nothing to improve."""
     history = servermanager.Fetch(find(name), idx=1)
     assert history.GetNumberOfRows() == rows, history.GetNumberOfRows()
     (view,), (layout,) = simple.GetViews(), simple.GetLayouts().values()
@@ -57,7 +57,7 @@ def render_view():
 
 @check
 def own_display():
-    """Other colours of the regions and another title than the plugin's; saved as both kinds of state."""
+    """Other colors of the regions and another title than the plugin's; saved as both kinds of state."""
     view = render_view()
     shown = simple.Show(find("MeshDomain"), view)
     shown.LookupTable.IndexedColors = COLORS
@@ -103,7 +103,7 @@ def isolated(*cells):
 
 @check
 def mesh_hidden():
-    """As before Isolate; and nothing else is drawn."""
+    """As before Isolate; and no other mesh is drawn."""
     shown = simple.GetDisplayProperties(find("ElementQuality"), render_view())
     state = shown.Visibility, shown.Representation, shown.Opacity, added_cells()
     assert state == (0, "Surface", 1, []), state

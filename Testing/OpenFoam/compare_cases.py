@@ -3,9 +3,10 @@
 """compare_cases.py CASES... [--table FILE]: Element Quality on the meshes of make_cases.py against checkMesh.
 
 Each mesh that checkMesh has written fields of is compared, by the largest difference of each field and by the number
-of failed checks: the mesh in constant/polyMesh, those of regions, and meshes in pieces (make_cases.py --decompose).
+of failed checks: the mesh in constant/polyMesh, the meshes of regions, and meshes in pieces (make_cases.py
+--decompose).
 Pieces are read by one process in two ways. With the addresses that decomposePar has written, they are the mesh before
-the decomposition; the fields are those of this mesh, the number of failed checks is that of checkMesh -parallel.
+the decomposition; the fields belong to this mesh, the number of failed checks to checkMesh -parallel.
 Without these addresses, the pieces are joined along their processor patches, and the fields are those that the
 processes of checkMesh -parallel have written. (Pieces on ranks would be one more member of Reading.)
 
@@ -45,7 +46,7 @@ FIELDS = {
     "aspectRatio": ("cell_aspect_ratio", True),
     "minTetVolume": ("center_tet_quality", False),
 }
-#: Compared as well; the metric is that of faces.
+#: Compared as well; the metric is for faces.
 FACE_FIELD = "faceWeight"
 NAMES = [*FIELDS, FACE_FIELD]
 #: Stands for the number of failed checks where fields are named.
@@ -55,16 +56,16 @@ LIMIT = 1e-10
 INTERPOLATED = {"cyclicAMI", "cyclicACMI", "cyclicPeriodicAMI"}
 #: Above this slenderness, the rounding of the skewness grows with it.
 SLENDER = 100
-#: Beyond so many widths of a cell from the origin, the rounding of coordinates shows in the fields, at this rate.
+#: Beyond this many widths of a cell from the origin, the rounding of coordinates shows in the fields, at this rate.
 FAR = 1e4
 PER_WIDTH = 1e-12
 VERDICT = re.compile(r"^(Mesh OK\.|Failed (\d+) mesh checks\.)", re.MULTILINE)
-#: Why meshes are refused, by the message.
-REFUSALS = {
+#: Why meshes are rejected, by the message.
+REJECTIONS = {
     r"is open": "a cell has an edge that belongs to one or three of its faces, which no polyhedron has",
     r"more than once": "a face has a point twice",
 }
-#: Why there is no mesh to compare, by a part of what make_cases.py says.
+#: Why there is no mesh to compare, by a part of the message of make_cases.py.
 UNMADE = {
     "too many cells": "the mesh has more cells than the limit of make_cases.py",
     "took longer": "the mesh takes more time than the limit of make_cases.py",
@@ -101,7 +102,7 @@ and by checkMesh, and the largest difference of each field.
 
 
 class Reading(Enum):
-    """How a mesh is read; the values are those of the table."""
+    """How a mesh is read; the values appear in the table."""
 
     WHOLE = "whole"
     ADDRESSED = "pieces"
@@ -159,7 +160,7 @@ class Mesh:
 
 @dataclass
 class Comparison:
-    """What was found of a mesh."""
+    """The results for a mesh."""
 
     name: str
     reading: Reading = Reading.WHOLE
@@ -168,7 +169,7 @@ class Comparison:
     failed_by_checkmesh: int | None = None
     differences: dict[str, float] = field(default_factory=dict)
     limits: dict[str, float] = field(default_factory=dict)
-    refused: str = ""
+    rejected: str = ""
     reason: str = ""
 
     @property
@@ -179,7 +180,7 @@ class Comparison:
 
     @property
     def agrees(self) -> bool:
-        return not self.refused and not self.wrong
+        return not self.rejected and not self.wrong
 
 
 def read_field(file: Path) -> np.ndarray:
@@ -203,7 +204,7 @@ def read_fields(mesh: Mesh, name: str, cells: int) -> np.ndarray:
 
 
 def cells_of_parts(mesh: Mesh, cells: int) -> list[int]:
-    """The numbers of cells in the folders of fields; decomposePar has noted those of pieces."""
+    """The numbers of cells in the folders of fields; decomposePar has recorded the numbers for pieces."""
     folders = mesh.fields()
     if len(folders) == 1:
         return [cells]
@@ -212,7 +213,7 @@ def cells_of_parts(mesh: Mesh, cells: int) -> list[int]:
 
 
 def verdict(log: Path) -> int | None:
-    """The number of failed checks in the output of checkMesh, which may end before it says so."""
+    """The number of failed checks in the output of checkMesh, which may end before its verdict."""
     found = VERDICT.findall(log.read_text())
     return int(found[-1][1] or 0) if found else None
 
@@ -237,8 +238,8 @@ def read_mesh(mesh: Mesh) -> Any:
 
 
 def face_weights(faces, piece: np.ndarray) -> np.ndarray:
-    """Of each cell the least weight of its faces, as checkMesh writes it: of internal faces the weight of the owner, of
-    coupled faces that of the cell itself. Faces between pieces are coupled.
+    """For each cell the smallest weight of its faces, as checkMesh writes it: for internal faces the owner's weight,
+    for coupled faces the weight of the cell itself. Faces between pieces are coupled.
     """
     arrays = {name: vtk_to_numpy(faces.GetCellData().GetArray(name)) for name in ("Owner", "Neighbour", "OwnerWeight")}
     weights = np.full(len(piece), np.inf)
@@ -270,7 +271,7 @@ def slenderness(faces, volumes: np.ndarray) -> float:
 
 
 def limits_of(mesh: Mesh, points: np.ndarray, faces, volumes: np.ndarray) -> dict[str, float]:
-    """What the fields may differ by."""
+    """The tolerances of the fields."""
     width = np.cbrt(volumes[volumes > 0].min()) if (volumes > 0).any() else 1.0
     distance = np.abs(points).max() / width
     limit = LIMIT if distance < FAR else max(LIMIT, PER_WIDTH * distance)
@@ -289,10 +290,10 @@ def patch_types(mesh: Mesh) -> set[str]:
 
 
 def explained(found: Comparison, log: str) -> str:
-    """Why a mesh is refused or differs, as far as it is known."""
-    if found.refused:
-        known = [reason for message, reason in REFUSALS.items() if re.search(message, found.refused)]
-        return known[0] if known else re.sub(r"\S*/(?=\w+:)", "", found.refused)
+    """Why a mesh is rejected or differs, as far as it is known."""
+    if found.rejected:
+        known = [reason for message, reason in REJECTIONS.items() if re.search(message, found.rejected)]
+        return known[0] if known else re.sub(r"\S*/(?=\w+:)", "", found.rejected)
     wrong = found.wrong
     known = [
         reason for name, line, readings, reason in REASONS
@@ -308,7 +309,7 @@ def compare_mesh(mesh: Mesh, name: str) -> Comparison:
         data = read_mesh(mesh)
         result = tautline.quality(data, [metric for metric, _ in FIELDS.values()], face_output="all")
     except tautline.Error as error:
-        found.refused = str(error)
+        found.rejected = str(error)
         found.reason = explained(found, "")
         return found
     found.cells = cells = int((vtk_to_numpy(data.GetCellData().GetArray("Face")) < 0).sum())
@@ -347,7 +348,7 @@ def meshes_of(case: Path) -> list[Mesh]:
 
 @dataclass
 class Cases:
-    """The meshes of folders, each once, and what the tables of make_cases.py say of them."""
+    """The meshes of folders, each once, and their entries in the tables of make_cases.py."""
 
     meshes: dict[tuple[str, Reading], tuple[str, Mesh]] = field(default_factory=dict)  # by what they contain
     tutorials: set[str] = field(default_factory=set)
@@ -383,9 +384,9 @@ def number(value: float) -> str:
 def counted(comparisons: Iterable[Comparison], label: str) -> str:
     """A row of the summary."""
     of = list(comparisons)
-    agree, refused = sum(found.agrees for found in of), sum(bool(found.refused) for found in of)
+    agree, rejected = sum(found.agrees for found in of), sum(bool(found.rejected) for found in of)
     cells = sum(found.cells for found in of)
-    return f"| {label} | {len(of)} | {cells} | {agree} | {len(of) - agree - refused} | {refused} |"
+    return f"| {label} | {len(of)} | {cells} | {agree} | {len(of) - agree - rejected} | {rejected} |"
 
 
 def versions(cases: Cases) -> str:
@@ -430,13 +431,13 @@ def summary(cases: Cases, comparisons: list[Comparison]) -> list[str]:
 
 
 def disagreements(comparisons: list[Comparison]) -> list[str]:
-    """What differs or is refused, by the reason."""
+    """Differences and rejections, by the reason."""
     lines = ["## What differs", ""]
     groups: dict[str, list[str]] = {}
     for found in comparisons:
         if found.agrees:
             continue
-        if found.refused:
+        if found.rejected:
             key, text = f"Rejected: {found.reason}", found.name
         else:
             key, text = f"Differs: {found.reason or 'not explained'}", found.name
@@ -467,7 +468,7 @@ def page(cases: Cases, comparisons: list[Comparison]) -> str:
     lines += ["|mesh|read|cells|failed|checkMesh|" + "|".join(NAMES) + "|", "|---" * (5 + len(NAMES)) + "|"]
     for found in comparisons:
         start = f"|{found.name}|{found.reading.value if found.reading != Reading.WHOLE else ''}|"
-        if found.refused:
+        if found.rejected:
             lines.append(f"{start}|rejected|{found.failed_by_checkmesh}|" + "|" * len(NAMES))
             continue
         values = "|".join(number(found.differences[name]) for name in NAMES)
@@ -487,8 +488,8 @@ def main() -> int:
     named = sorted(cases.meshes.values(), key=lambda entry: (entry[0], order.index(entry[1].reading)))
     comparisons = [compare_mesh(mesh, name) for name, mesh in named]
     for found in comparisons:
-        if found.refused:
-            print(f"{found.name} {found.reading.value}: refused: {found.refused}")
+        if found.rejected:
+            print(f"{found.name} {found.reading.value}: rejected: {found.rejected}")
         elif not found.agrees:
             failed = f"{found.failed} failed checks, {found.failed_by_checkmesh} by checkMesh"
             print(f"{found.name} {found.reading.value}: {failed};", found.wrong)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""make_cases.py [options] [TUTORIAL...]: meshes of OpenFOAM's tutorials, and what checkMesh says of them.
+"""make_cases.py [options] [TUTORIAL...]: meshes of OpenFOAM's tutorials, and the verdicts of checkMesh.
 
 Every tutorial (all with a blockMeshDict by default) is meshed the way its own scripts do it: they run in a copy of the
 tutorials, with a PATH that has nothing but the tools for meshes and files, and end where the first solver would start.
@@ -9,8 +9,8 @@ Each mesh that comes out, told apart by its points, faces, and patches, is check
     checkMesh -constant -allGeometry -allTopology -writeAllFields
 
 and kept as a case in the folder of the results: constant/polyMesh, the fields of checkMesh in constant (ASCII, 17
-digits), and its output in log.checkMesh. A table of all is written as results.json and results.csv. What is in the
-table already is not run again. --synthetic makes meshes of its own as well, with faults that no tutorial has.
+digits), and its output in log.checkMesh. A table of all is written as results.json and results.csv. Meshes that are in
+the table already are not run again. --synthetic makes meshes of its own as well, with faults that no tutorial has.
 
 A mesh of a region is checked with -region, and its fields are in constant/REGION, its output in log.checkMesh.REGION.
 
@@ -20,8 +20,8 @@ its own, are in processor0, processor1, ... of the case, the output in log.check
 log.checkPieces.REGION. A mesh with fewer than N cells is not divided. DECOMPOSED lists tutorials of many kinds, which
 --decompose takes if none is named.
 
-The tutorials are looked for in the folder of FOAM_TUTORIALS, the settings of OpenFOAM in that of WM_PROJECT_DIR, and
-its programs in PATH. One program runs at a time.
+The tutorials are looked for in the folder of FOAM_TUTORIALS, the settings of OpenFOAM in the folder of WM_PROJECT_DIR,
+and its programs in PATH. One program runs at a time.
 """
 
 import argparse
@@ -159,7 +159,7 @@ laplacianSchemes { default Gauss linear corrected; }
 interpolationSchemes { default linear; }
 snGradSchemes { default corrected; }
 """
-#: What follows the settings of a tutorial in its controlDict, and so overrides them.
+#: Settings after the tutorial's own in its controlDict, which override them.
 SETTINGS = """
 writeFormat ascii;
 writePrecision 17;
@@ -262,7 +262,7 @@ def set_format(case: Path) -> None:
 
 
 def foam_list(file: Path) -> bytes:
-    """What a file of a mesh holds, without its header."""
+    """The contents of a file of a mesh, without its header."""
     text = re.sub(rb"//[^\n]*|/\*.*?\*/", b"", file.read_bytes(), flags=re.S)
     return re.sub(rb"^\s*FoamFile\s*\{.*?\}", b"", text, count=1, flags=re.S)
 
@@ -433,7 +433,7 @@ class Tutorials:
         return run(["decomposePar", "-constant", *options], case, self.checker, seconds, log) == 0
 
     def check(self, case: Path, region: str, seconds: float, pieces: int = 1) -> str:
-        """Checks a mesh of a case, or its pieces, and writes its fields; what checkMesh says at the end."""
+        """Checks a mesh of a case, or its pieces, and writes its fields; returns the verdict of checkMesh."""
         log = case / (("log.checkPieces" if pieces > 1 else "log.checkMesh") + (f".{region}" if region else ""))
         options = ["-region", region] if region else []
         environment, check = self.checker, CHECK
@@ -485,7 +485,7 @@ def meshes(case: Path) -> list[str]:
 
 
 def reason(folder: Path) -> str:
-    """What the logs in a folder say of the fault that ended the last program."""
+    """The fault that ended the last program, from the logs in a folder."""
     logs = sorted(folder.rglob("log.*"), key=lambda file: file.stat().st_mtime)
     for log in reversed(logs):
         text = log.read_text(errors="replace")
@@ -590,7 +590,7 @@ def tidy(case: Path) -> None:
 
 
 def ordered_faces(cells: Sequence[Sequence[Face]]) -> tuple[list[Face], list[int], list[int]]:
-    """Faces, owners, and neighbors of cells that are given by their faces, in the order that OpenFOAM wants.
+    """Faces, owners, and neighbors of cells that are given by their faces, in the order that OpenFOAM requires.
 
     The faces of each cell are directed outward. A face of two cells is given by both, in opposite directions.
     """
@@ -635,7 +635,7 @@ def write_mesh(
     case: Path, points: Sequence[Point], mesh: tuple[list[Face], list[int], list[int]],
     boundary: Sequence[Patch] = (("walls", "wall", everywhere),),
 ) -> None:  # fmt: skip
-    """Writes a case with a mesh. Its outer faces go to the first patch that takes them, those of a cyclicACMI patch
+    """Writes a case with a mesh. Its outer faces go to the first patch that takes them, faces of a cyclicACMI patch
     once more to a wall after it.
     """
     faces, owners, neighbors = mesh
@@ -970,7 +970,7 @@ def everywhere_inside(point: Point) -> bool:
 
 
 def side_of(face: Sequence[Point]) -> float:
-    """1 and -1 for the two flat sides of a wedge about the x axis, 0 for all else."""
+    """1 and -1 for the two flat sides of a wedge about the x axis, 0 for all others."""
     signs = {math.copysign(1.0, z) for _, y, z in face if y > 1e-12}
     return signs.pop() if len(signs) == 1 else 0.0
 

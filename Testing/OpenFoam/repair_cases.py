@@ -67,7 +67,7 @@ DIGITS = 10  # of coordinates in which the two sides of a layer agree
 
 @dataclass
 class Repair:
-    """What was found of a mesh."""
+    """The results for a mesh."""
 
     name: str
     cells: int
@@ -81,7 +81,7 @@ class Repair:
 
 
 def perturb(case: Path, points: np.ndarray, amplitude: float) -> np.ndarray:
-    """Internal points moved, those of one layer in its plane and alike on both sides. The same each time."""
+    """Internal points moved; in one layer within its plane, in the same way on both sides. The same each time."""
     mesh = case / "constant/polyMesh"
     faces = read_faces(mesh)
     held = boundary(mesh, faces, empty=False)

@@ -44,7 +44,7 @@ ENVIRONMENT = {
 }
 REPAIR = ["optimize", "case.foam", "--preset", "finite volumes", "--in-place"]
 MESHES = ("original", "perturbed", "repaired")
-#: The repaired mesh takes at most so many times the iterations of the original.
+#: The repaired mesh takes at most this multiple of the original's iterations.
 MORE_ITERATIONS = 1.3
 #: Largest relative difference between the means of both.
 LARGEST_DIFFERENCE = 0.03
@@ -100,7 +100,7 @@ class Case:
     mean: tuple[str, str]
     #: The command that makes the mesh of the tutorial; empty for the sample in Data.
     mesher: list[str] = field(default_factory=list)
-    #: Of one layer of cells across z: where points move, in x and y, and the distance at which the displacement has
+    #: For one layer of cells across z: where points move, in x and y, and the distance at which the displacement has
     #: fallen by a factor of e. Without it, all points move.
     spot: tuple[tuple[float, float], float] | None = None
 
@@ -116,7 +116,7 @@ CASES = {
 
 @dataclass
 class Outcome:
-    """What checkMesh and the solver have found on a mesh."""
+    """The results of checkMesh and the solver on a mesh."""
 
     failed_checks: int
     non_orthogonality: float
@@ -128,7 +128,7 @@ class Outcome:
 
 
 def run(command: list[str], folder: Path) -> tuple[int, str]:
-    """Exit status and output of a command; the output is in log.NAME, too."""
+    """Exit status and output of a command; the output is also in log.NAME."""
     log = folder / f"log.{command[0]}"
     with log.open("w", encoding="utf-8") as output:
         done = subprocess.run(command, cwd=folder, env=ENVIRONMENT, stdout=output, stderr=subprocess.STDOUT,
@@ -176,7 +176,7 @@ def read_faces(mesh: Path) -> list[np.ndarray]:
 
 
 def boundary(mesh: Path, faces: list[np.ndarray], empty: bool) -> list[np.ndarray]:
-    """The faces of the patches, those of the kind "empty", or the others."""
+    """The faces of the patches of the kind "empty", or of the others."""
     found, kinds = [], patches(mesh)
     start = len(faces) - sum(count for _, _, count in kinds)
     for _, kind, count in kinds:
@@ -187,7 +187,7 @@ def boundary(mesh: Path, faces: list[np.ndarray], empty: bool) -> list[np.ndarra
 
 
 def perturb(folder: Path, case: Case) -> None:
-    """Moves the internal points, with one layer those of both sides alike. The same each time."""
+    """Moves the internal points, with one layer in the same way on both sides. The same each time."""
     mesh = folder / "constant/polyMesh"
     points, faces = read_points(mesh), read_faces(mesh)
     inside = np.ones(len(points), bool)
@@ -266,7 +266,7 @@ def solve_case(name: str, work: Path) -> dict[str, Outcome]:
 
 
 def faults(outcomes: dict[str, Outcome]) -> list[str]:
-    """What is not as it should be."""
+    """The deviations from the expected results."""
     original, perturbed, repaired = (outcomes[mesh] for mesh in MESHES)
     found = []
     for mesh in "original", "repaired":
@@ -380,7 +380,7 @@ def draw(file: Path, results: dict[str, dict[str, Outcome]], work: Path) -> None
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("cases", nargs="*", metavar="CASE", help=", ".join(CASES))
-    parser.add_argument("--work", type=Path, help="a new folder that keeps the cases; else a temporary one")
+    parser.add_argument("--work", type=Path, help="a new folder that keeps the cases; otherwise a temporary one")
     parser.add_argument("--picture", type=Path, metavar="FILE.png", help="needs Matplotlib")
     parser.add_argument("--json", type=Path, metavar="FILE", help="the table and the residuals")
     arguments = parser.parse_args()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the tests of the package share: directories, checks of errors and commands, small meshes."""
+"""Common parts of the tests of the package: directories, checks of errors and commands, small meshes."""
 
 import os
 import subprocess
@@ -17,7 +17,7 @@ SKIPPED = 77  # exit code, SKIP_RETURN_CODE of ctest
 SLOW = os.environ.get("TAUTLINE_SLOW_TESTS") == "1"  # ./run test --all
 
 
-def refused(text: str, function, *arguments, **options) -> None:
+def rejected(text: str, function, *arguments, **options) -> None:
     """Check that a call raises tautline.Error with a text in its message."""
     try:
         function(*arguments, **options)

@@ -109,7 +109,7 @@ compare("random, one rank", mesh(cut="random", dimension=2, n=8), mesh(takers=1,
 compare("surfaces", mesh(cut="random", kind="surface", dimension=2, n=8),
         mesh(after=1, kind="surface", dimension=2, n=8))  # fmt: skip
 compare("several pieces", mesh(several=1, kind="tangled"), mesh(cut="random", after=1, several=1, kind="tangled"))
-# The pieces look alike, and the ids tell that they are not; or the ids are those of another mesh.
+# The pieces look alike, and the ids show that they are not; or the ids belong to another mesh.
 compare("swapped slabs", mesh(), mesh(after=1, swap=1))
 compare("other ids", mesh(cut="tree"), mesh(cut="tree", after=1, shift=1000))
 # By their places where nothing has moved.
@@ -139,10 +139,10 @@ blocks = update(CompareMeshes(Input=first, Other=second, Metrics=METRICS))
 results["more blocks"] = [table(blocks), blocks.Summary]
 
 
-def refused(name, first, second):
+def rejected(name, first, second):
     """An error on all ranks, and none waits."""
     filter_ = update(CompareMeshes(Input=first, Other=second))
-    results[f"refused {name}"] = [filter_.GetDataInformation().GetNumberOfCells(), filter_.Summary]
+    results[f"rejected {name}"] = [filter_.GetDataInformation().GetNumberOfCells(), filter_.Summary]
 
 
 # The last rank with cells has another cell.
@@ -156,14 +156,14 @@ if controller.GetLocalProcessId() == controller.GetNumberOfProcesses() - 1:
     connectivity = vtk_to_numpy(grid.GetCells().GetConnectivityArray())
     connectivity[[0, 1]] = connectivity[[1, 0]]
 """
-refused("order", mesh(), simple.ProgrammableFilter(mesh(after=1), Script=BREAK))
-refused("cells", mesh(n=3), mesh(after=1))
+rejected("order", mesh(), simple.ProgrammableFilter(mesh(after=1), Script=BREAK))
+rejected("cells", mesh(n=3), mesh(after=1))
 if RANKS > 1:
     # Copies of cells that are no longer marked are not counted as cells.
     drop = "output.VTKObject.ShallowCopy(inputs[0].VTKObject); output.CellData.VTKObject.RemoveArray('vtkGhostType')"
     unmarked = [simple.ProgrammableFilter(mesh(ghosts=1, after=after), Script=drop) for after in (0, 1)]
-    refused("copies", *unmarked)
-    refused(wording("no-ids"), mesh(ids=0), mesh(cut="random", ids=0, after=1))
+    rejected("copies", *unmarked)
+    rejected(wording("no-ids"), mesh(ids=0), mesh(cut="random", ids=0, after=1))
 
 results["ranks"] = RANKS
 with open(sys.argv[1], "w", encoding="utf-8") as out:

@@ -50,7 +50,7 @@ FACETS = np.unique(faces[(POINTS[faces][:, :, 0] == WALL).all(axis=1)], axis=0)
 
 
 def mesh(cut: str, ghosts: bool = False, single: bool = False, triangles: bool = False):
-    """What this rank has; on four ranks or more the last has nothing."""
+    """The piece of this rank; on four ranks or more the last has nothing."""
     takers = RANKS - 1 if RANKS > 3 else RANKS
     points = POINTS.astype(np.float32) if single else POINTS
     grid = piece(points, CELLS, divided(CENTRES, cut, takers) == RANK, ghosts)
@@ -198,7 +198,7 @@ def routes() -> None:
 
 
 def gathered() -> None:
-    """What needs the whole mesh gets it, and the summary states why."""
+    """Operations that need the whole mesh get it, and the summary states why."""
     data = mesh("random")
     improved("small", data, below=len(CELLS) + 1)
     improved("on surface", data, Boundary=2)

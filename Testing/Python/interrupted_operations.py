@@ -29,7 +29,7 @@ def cube(n: int):
 
 @lru_cache(maxsize=None)
 def moved(n: int, amplitude: float):
-    """A cube whose interior points are moved at random, by up to so many edges."""
+    """A cube whose interior points are moved at random, by up to this many edges."""
     mesh = cube(n).NewInstance()
     mesh.DeepCopy(cube(n))
     xyz = points(mesh)
@@ -74,8 +74,8 @@ def optimize(optimizer: str, **options):
     return tl.optimize(moved(40, 0.1), ["imr"], optimizer=optimizer, **endless, **options)
 
 
-#: What an operation does at the time limit: it ends with an error, returns the best result so far, or either, since an
-#: operation that keeps its best has none before its preparation ends, which a busy machine delays.
+#: The behavior of an operation at the time limit: it ends with an error, returns the best result so far, or either,
+#: since an operation that keeps its best has none before its preparation ends, which a busy machine delays.
 LIMIT, BEST, EITHER = "limit", "best", "either"
 #: By name: an operation with the arguments progress and time_limit, and what it does at the time limit.
 OPERATIONS = {

@@ -19,7 +19,7 @@ from rank_meshes import CUTS
 
 simple.LoadPlugin(os.environ["TAUTLINE_PLUGIN"], ns=globals())
 CUSTOM = 0  # of the enumeration Preset
-METRICS = ["My distortion", "Longest edge", "Height of the centre", "Slenderness"]
+METRICS = ["My distortion", "Longest edge", "Height of the center", "Slenderness"]
 ARRAYS = ["my_distortion", "longest_edge", "height", "slenderness", "Validity", "Grade"]
 LIMITS = ("ideal", "good", "warn", "fail", "worst")
 CRITERIA = json.dumps({"name": "own", "criteria": [
@@ -85,23 +85,23 @@ results["ghosts"] = {
     "summary": quality.Summary,
 }
 
-# An objective without derivatives is refused by sweeps.
+# An objective without derivatives is rejected by sweeps.
 tried = OptimizeMesh(Input=cube("slabs"), Preset=CUSTOM, Optimizer="Local Newton")
 tried.Metric1 = "Slenderness"
 update(tried)
 
 # A metric that is registered on this process only: an error on all, and none waits.
 tautline.register_metric("only_here", lambda corners, cell: np.ones(len(corners)), label="Only here")
-refused = {
+rejected = {
     "quality": ElementQuality(Input=cube("random"), Metrics=["Inverse mean ratio", "Only here"]),
     "compare": CompareMeshes(Input=cube("random"), Other=cube("random"), Metrics=["Only here"]),
     "optimize": OptimizeMesh(Input=cube("random"), ReproducibleOrder=1, WorstElementBy="Only here"),
     "improve": ImproveMesh(Input=cube("random"), Metric="Only here"),
 }
 if RANKS > 1:
-    for name, filter_ in refused.items():
+    for name, filter_ in rejected.items():
         update(filter_)
-        results[f"refused {name}"] = [filter_.GetDataInformation().GetNumberOfCells(), filter_.Summary]
+        results[f"rejected {name}"] = [filter_.GetDataInformation().GetNumberOfCells(), filter_.Summary]
     # Wrong on the last process only.
     wrong = Path(sys.argv[1]).with_suffix(".py")
     wrong.write_text(f"from rank_meshes import RANK\nassert RANK != {RANKS - 1}, 'not here'\n", encoding="utf-8")

@@ -14,6 +14,6 @@ def slenderness(corners, cell_type):
     return edges.max(axis=(1, 2)) / np.where(edges > 0, edges, np.inf).min(axis=(1, 2))
 
 
-tautline.register_metric("height", height, label="Height of the centre", rotation_invariant=False, acceptable=(0, 3))
+tautline.register_metric("height", height, label="Height of the center", rotation_invariant=False, acceptable=(0, 3))
 tautline.register_metric("slenderness", slenderness, label="Slenderness", scale_invariant=True, full=(1, np.inf),
                          acceptable=(1, 2.2), ideal=1)  # fmt: skip

@@ -33,7 +33,7 @@ if {ids} and grid.GetNumberOfPoints():
     add_global_ids(grid)
 output.VTKObject.ShallowCopy(grid)
 """
-TURN = """  # half of the cells list their points in the opposite order: with slabs, those of some ranks
+TURN = """  # half of the cells list their points in the opposite order: with slabs, the cells of some ranks
 half = points[cells].mean(axis=1)[:, 2] < {n} / 2
 cells[half, :2] = cells[half, 1::-1]
 """
@@ -44,7 +44,7 @@ np.minimum.at(lowest, cells, divided(places[cells].mean(axis=1), "{cut}", RANKS)
 points = points + 1e-12 * np.maximum(0, RANK - lowest)[:, None]
 """
 BREAK = "points[np.flatnonzero(inner.all(axis=1))[3]] = np.nan"
-# Of the copies of a point, that of one rank only: of the last one that has the point, or the first.
+# Only one rank's copy of a point: of the last rank that has the point, or of the first.
 BREAK_COPY = """
 point = np.flatnonzero(inner.all(axis=1))[3]
 holders = divided(places[cells].mean(axis=1), "{cut}", RANKS)[(cells == point).any(axis=1)]
@@ -78,7 +78,7 @@ def cut_cube(n: int, amplitude: float, cut: str, change: str = "", ids: bool = F
 
 
 def points_of(proxy) -> list:
-    """The points in the order of the whole mesh; those of several ranks agree."""
+    """The points in the order of the whole mesh; points of several ranks agree."""
     found = parts(proxy, sys.argv[1])
     where = np.concatenate([one["place"] for one in found])
     points = np.concatenate([one["points"] for one in found])

@@ -18,7 +18,7 @@ simple.LoadPlugin(os.environ["TAUTLINE_PLUGIN"], ns=globals())
 results = {}
 
 # Runs on every rank: its part of a square of triangles with a hole. `ids`: global ones; without them the points
-# are in the order of their coordinates and the cells in that of their points, as meshes are put together.
+# are in the order of their coordinates and the cells in the order of their points, as meshes are put together.
 PIECES = """
 import numpy as np
 from rank_meshes import RANK, RANKS, add_array, add_global_ids, appended, divided, piece, simplices
@@ -172,9 +172,9 @@ layer("small", mesh(cut="tree", ids=0), ElementSize=0.04, Width=0.1)
 layer("by ids", mesh(cut="random"), MergeCoincidentPoints=0)
 
 
-def refused(name, filter_):
+def rejected(name, filter_):
     """An error on all ranks, and none waits."""
-    results[f"refused {name}"] = update(filter_).GetDataInformation().GetNumberOfCells()
+    results[f"rejected {name}"] = update(filter_).GetDataInformation().GetNumberOfCells()
 
 
 # The last rank has a quadrilateral, a flat triangle, or a point that does not exist.
@@ -193,18 +193,18 @@ for case, change in {
     "point": "connectivity[0] = 100000",
 }.items():
     broken = simple.ProgrammableFilter(mesh(), Script=BREAK.format(change=change))
-    refused(f"horizon {case}", HorizonNeighbors(broken))
-    refused(f"layer {case}", InteractionLayer(broken))
+    rejected(f"horizon {case}", HorizonNeighbors(broken))
+    rejected(f"layer {case}", InteractionLayer(broken))
 # A cell of the last rank has the id of one of the first rank; a mesh of one rank keeps its order whatever the ids are.
 if RANKS > 1:
     same = BREAK.format(change="vtk_to_numpy(grid.GetCellData().GetGlobalIds())[0] = 0")
-    refused(wording("horizon-ids"), HorizonNeighbors(simple.ProgrammableFilter(mesh(), Script=same)))
-    refused(wording("layer-ids"), InteractionLayer(simple.ProgrammableFilter(mesh(), Script=same)))
+    rejected(wording("horizon-ids"), HorizonNeighbors(simple.ProgrammableFilter(mesh(), Script=same)))
+    rejected(wording("layer-ids"), InteractionLayer(simple.ProgrammableFilter(mesh(), Script=same)))
 flat = simple.ProgrammableFilter(mesh(), Script=BREAK.format(change="connectivity[0] = connectivity[1]"))
-refused(wording("layer-flat"), InteractionLayer(flat))
-refused(wording("horizon-zero"), HorizonNeighbors(mesh(), Horizon=0))
-refused(wording("layer-width"), InteractionLayer(mesh(), Width=0))
-refused(wording("layer-time"), InteractionLayer(mesh(), ElementSize=0.002, Width=0.5, TimeLimit=0.2))
+rejected(wording("layer-flat"), InteractionLayer(flat))
+rejected(wording("horizon-zero"), HorizonNeighbors(mesh(), Horizon=0))
+rejected(wording("layer-width"), InteractionLayer(mesh(), Width=0))
+rejected(wording("layer-time"), InteractionLayer(mesh(), ElementSize=0.002, Width=0.5, TimeLimit=0.2))
 
 results["ranks"] = RANKS
 with open(sys.argv[1], "w", encoding="utf-8") as out:

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the tests share that run a script by pvbatch on MPI ranks. A test that imports it is skipped without mpirun."""
+"""Common parts of the tests that run a script by pvbatch on MPI ranks. A test that imports it is skipped without
+mpirun."""
 
 import json
 import os
@@ -14,8 +15,8 @@ if not MPIRUN:
     print("there is no mpirun")
     sys.exit(77)
 HERE, OUT = Path(__file__).parent, Path(os.environ["TAUTLINE_TEST_DIR"])
-# As root, too, and wherever processes may not read each other's memory; ranks that wait leave the cores to others. What
-# runs on the ranks, also scripts of sources, imports modules from here.
+# Also as root, and where processes may not read each other's memory; ranks that wait leave the cores to others. Code
+# that runs on the ranks, also scripts of sources, imports modules from here.
 ENVIRONMENT = dict(
     os.environ, OMPI_MCA_btl_vader_single_copy_mechanism="none", OMPI_MCA_mpi_yield_when_idle="1", OMP_NUM_THREADS="1",
     PYTHONPATH=os.pathsep.join(filter(None, (str(HERE), os.environ.get("PYTHONPATH")))),
@@ -24,12 +25,12 @@ SECONDS = 400
 
 
 def printed(folder: str) -> list[str]:
-    """What each rank has printed."""
+    """The output of each rank."""
     return [part.read_text(encoding="utf-8", errors="replace") for part in sorted(Path(folder).iterdir())]
 
 
 def run_with_output(script: str, ranks: int, *arguments: str, symmetric: bool = False) -> tuple[dict, str]:
-    """What a script writes, as JSON, to the file that is its first argument, and what is printed.
+    """The JSON that a script writes to the file of its first argument, and the printed text.
 
     The test was given the path of pvbatch. symmetric: the script runs on each rank, not on the first only.
     """

@@ -21,7 +21,7 @@ CRITERIA = """{"name": "test", "criteria": [{"metric": "mean_ratio", "weight": 2
 results = {}
 
 # Runs on every rank: its part of a jittered cube of tetrahedra, or of a square of triangles. The points are in the
-# order of their coordinates and the cells in that of their points, as meshes without global ids are put together.
+# order of their coordinates and the cells in the order of their points, as meshes without global ids are put together.
 PIECES = """
 import numpy as np
 from rank_meshes import RANK, RANKS, add_array, add_global_ids, divided, piece, simplices
@@ -101,7 +101,7 @@ def motions(name, cut, **given):
     warped = update(WarpMesh(source, TransformKind="Rotation", Angle=WARP_ANGLE, Method="FEMWARP", AutomaticSolver=0))
     results[f"warp {name}"] = values(warped, ["points", "Displacement"])
     results[f"warp table {name}"] = table(warped, 2)
-    if name != "tree":  # two partitions do for so many methods
+    if name != "tree":  # two partitions are enough for this many methods
         methods(name, source)
     for key, options in {
         "hybrid": {"Motion": "Displacement array", "Displacement": ["POINTS", "push"], "Method": "Hybrid"},
@@ -206,7 +206,7 @@ def failures():
     far = simple.ProgrammableFilter(source, Script=BREAK)
     for filter_ in (PerturbMesh(far), WarpMesh(far), ImproveMesh(far), PeridynamicCondition(far)):
         update(filter_)
-        results[f"refused {filter_.GetXMLName()}"] = filter_.GetDataInformation().GetNumberOfCells()
+        results[f"rejected {filter_.GetXMLName()}"] = filter_.GetDataInformation().GetNumberOfCells()
     # The points of an image do not move.
     results["image"] = update(PerturbMesh(simple.Wavelet(WholeExtent=[0, 2, 0, 2, 0, 2]))).Summary
     # The filter before fails, on one rank only.

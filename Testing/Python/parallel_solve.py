@@ -72,7 +72,7 @@ for ghosts, ids in ((0, 0), (1, 0), (0, 1), (1, 1)):
     results[f"poisson {ghosts} {ids}"] = field(solved, "Solution")
     results[f"unknowns {ghosts} {ids}"] = solved.Unknowns
     gradients = [np.linalg.norm(arrays["Gradient"], axis=1).min() for arrays in parts(solved, sys.argv[1])]
-    results[f"flattest {ghosts} {ids}"] = np.min(gradients).item()  # ghost cells have their gradients, too
+    results[f"flattest {ghosts} {ids}"] = np.min(gradients).item()  # ghost cells also have their gradients
 elastic = SolvePDE(
     cube(ghosts=1), Equation="Linear Elasticity", BodyForce=[0, 0, -1], Preconditioner="GAMG",
     FixedPart="Part of the Boundary", FixedWhere="x < 0.01", RelativeTolerance=TIGHT,
@@ -113,7 +113,7 @@ domain = update(MeshDomain(Domain="Square with Interaction Layer, Structured", E
 results["domain points"] = [arrays["points"].ravel().tolist() for arrays in parts(domain, sys.argv[1])]
 results["domain cells"] = domain.GetDataInformation().GetNumberOfCells()
 
-# Tables of the whole mesh, whichever rank has a cell: the worst cells are known by their centres.
+# Tables of the whole mesh, whichever rank has a cell: the worst cells are identified by their centers.
 CRITERIA = """{"name": "test", "criteria": [
   {"metric": "mean_ratio", "weight": 2,
    "limits": {"all": {"ideal": 1, "good": 0.8, "warn": 0.72, "fail": 0.69, "worst": 0.5}}},
@@ -138,7 +138,7 @@ for options in (
     {"FixedPart": "Part of the Boundary", "FixedWhere": "x > 2"},
 ):
     wrong = update(SolvePDE(cube(), **options))
-    results[f"refused {options}"] = wrong.GetDataInformation().GetNumberOfCells()
+    results[f"rejected {options}"] = wrong.GetDataInformation().GetNumberOfCells()
 late = update(SolvePDE(cube(), Preconditioner="None", TimeLimit=1e-9))
 # One process ends in the set-up with an error; several end together, in the iteration, with what they have.
 cells = late.GetDataInformation().GetNumberOfCells()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the scripts for pvbatch on MPI ranks share."""
+"""Common parts of the scripts for pvbatch on MPI ranks."""
 
 import numpy as np
 from paraview import simple

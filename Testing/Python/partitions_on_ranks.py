@@ -159,7 +159,7 @@ def over_time() -> None:
 
 
 def messages() -> None:
-    """What some ranks do not have, and names of what they have."""
+    """Items that some ranks lack, and names of the items that they have."""
     alone = ElementQuality(mesh(GRID, "last"), TargetType="Size from an array", SizeArray=["POINTS", "size"])
     results["size"] = values(update(alone), "imr")
     graded = update(ElementQuality(mesh(BLOCKS), Metrics=["Inverse mean ratio"]))

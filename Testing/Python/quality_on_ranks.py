@@ -26,7 +26,7 @@ inner = np.logical_and(places > 0, places < N).all(axis=1)
 x = np.zeros((len(places), 3))
 amplitude = 0.9 if "tangled" in KIND else 0.3
 x[:, :D] = places + amplitude * inner[:, None] * (np.random.default_rng(1).random(places.shape) - 0.5)
-if "mixed" in KIND:  # neighbours in most places
+if "mixed" in KIND:  # neighbors in most places
     turned = np.logical_or(places[cells].mean(axis=1)[:, 0] < N / 2, np.arange(len(cells)) % 5 == 0)
     cells[turned, 1:3] = cells[turned, 2:0:-1]
 own = divided(places[cells].mean(axis=1), "{cut}", RANKS) == RANK

@@ -2,7 +2,7 @@
 """requests_on_ranks.py FILE FORMATS: for pvbatch --sym on any number of MPI ranks, see test_read_on_ranks.py.
 
 Reads the files of the folder FORMATS with each rank asking for its piece, and writes to FILE as JSON what each rank
-found: cells and messages. Then all ask for the first piece, and one rank has no file name, or that of no file.
+found: cells and messages. Then all ask for the first piece, and one rank has no file name, or a name without a file.
 """
 
 import json
@@ -19,7 +19,7 @@ KINDS = {".msh": "Gmsh", ".mesh": "Medit", ".ele": "TetGen"}
 
 
 def read(path: Path, piece: int = RANK, named: bool = True) -> dict:
-    """What a rank gets of a file; named: whether the reader is given its name."""
+    """The part of a file that a rank gets; named: whether the reader is given its name."""
     reader = getattr(tautline, f"vtk{KINDS[path.suffix]}Reader")()
     if named:
         reader.SetFileName(str(path))

@@ -3,7 +3,7 @@
 
 Solves on a cube whose pieces are on the ranks: fewer pieces than ranks, as many, and more; cut in slabs, by a k-d tree
 and at random; with and without ghost cells. More pieces than ranks are also one data set on each rank, as ParaView's
-readers make it, with and without global ids. The same with the mesh divided anew by each partitioner. The first rank
+readers make it, with and without global ids. The same with the mesh redistributed by each partitioner. The first rank
 writes numbers and fields to FILE as JSON.
 """
 
@@ -16,6 +16,7 @@ import tautline
 from rank_meshes import CONTROLLER, CUTS, RANK, RANKS, add_global_ids, appended, divided, piece, quadratic, simplices
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkPartitionedDataSet, vtkUnstructuredGrid
+from wording import wording
 
 N = 5  # cubes of six tetrahedra each along an edge
 MOVED = 0.15  # of the edge of a cube
@@ -38,7 +39,7 @@ POINTS, CELLS = cube()
 
 
 def mesh(cut: str, pieces: int, ghosts: bool, together: bool = False, ids: bool = False):
-    """What this rank has: a data set, or with more pieces than ranks several in a partitioned data set.
+    """The data of this rank: a data set, or with more pieces than ranks several in a partitioned data set.
 
     together: they are one data set, whose points stay apart.
     """
@@ -64,7 +65,7 @@ def grids_of(data) -> list:
 
 
 def gathered(pairs: list) -> dict:
-    """The pairs of place and value of all ranks as a dict, on the first; those of one place must be equal."""
+    """The pairs of place and value of all ranks as a dict, on the first; values of one place must be equal."""
     text = json.dumps(pairs)
     lengths = [0] * RANKS
     file = f"{sys.argv[1]}.{RANK}"
@@ -81,7 +82,7 @@ def gathered(pairs: list) -> dict:
 
 
 def field(output, name: str, of_cells: bool = False) -> list:
-    """The values of the whole mesh, in its order, on the first rank. Ghosts have those of their originals."""
+    """The values of the whole mesh, in its order, on the first rank. Ghosts have the values of their originals."""
     pairs = []
     for grid in grids_of(output):
         if grid.GetNumberOfPoints():
@@ -104,7 +105,7 @@ def run(kind: str, data, redistribution: int):
 
 
 def numbers(data, redistribution: int = 0) -> dict:
-    """What the three filters find."""
+    """The results of the three filters."""
     solve = run("EllipticSolver", data, redistribution)
     solve.SetSourceType(EXPRESSION)
     solve.SetSourceExpression("x*y + z")
@@ -131,12 +132,12 @@ def numbers(data, redistribution: int = 0) -> dict:
         "eigenvalues": field(estimate.GetOutputDataObject(0), "LargestEigenvalue", of_cells=True),
         "excess": field(estimate.GetOutputDataObject(0), "Excess", of_cells=True),
         "study": column,
-        "divided": [filter_.GetSummary().count("divided anew among") for filter_ in (solve, estimate, study)],
+        "divided": [filter_.GetSummary().count(wording("divided-anew")) for filter_ in (solve, estimate, study)],
     }
 
 
 def curved_solution(cut: str, ids: bool, redistribution: int) -> dict:
-    """Of quadratic tetrahedra, whose edges are bent, in as many pieces as there are ranks."""
+    """A mesh of quadratic tetrahedra, whose edges are bent, in as many pieces as there are ranks."""
     points, cells = quadratic(*simplices(3))
     points = points / 3
     points = points + 0.2 * points * (1 - points) * np.sin(np.pi * points[:, [1, 2, 0]])

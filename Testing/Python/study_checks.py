@@ -72,7 +72,7 @@ class Studies:
             assert (folder / f"{picture}.png").stat().st_size > SMALLEST_PICTURE, f"{study}/{picture}.png is empty"
 
 
-def refused_command(text: str, *arguments: str, code: int = 1) -> None:
+def rejected_command(text: str, *arguments: str, code: int = 1) -> None:
     """Check that a command fails with a text on stderr."""
     with contextlib.redirect_stderr(io.StringIO()) as printed:
         assert command_line.main(list(arguments)) == code

@@ -5,7 +5,7 @@ import json
 
 import numpy as np
 import tautline as tl
-from checks import OUT, refused, run_tests, shell, square, wording
+from checks import OUT, rejected, run_tests, shell, square, wording
 
 WIDTH = 0.05
 LAYER = {"pde": "elliptic", "reaction": WIDTH**-2, "source": 0.0, "given": f"exp(-x/{WIDTH})",
@@ -102,7 +102,7 @@ def test_meshes():
 
     assert tl.adapt(mesh, named, 2, field="u", elements=300).field == "u"
     assert "u" not in mesh.point_data
-    refused(wording("several-new-point-arrays"), tl.adapt, mesh, named)
+    rejected(wording("several-new-point-arrays"), tl.adapt, mesh, named)
     vector = tl.adapt(mesh, lambda given: np.column_stack([front(given), given.points[:, 1] ** 2]), 2, elements=300)
     assert vector.solution.shape == (len(vector.points), 2)
     fixed = tl.adapt(mesh, front, 2, elements=600, boundary="fixed")
@@ -148,23 +148,23 @@ def test_solve():
 
 def test_errors():
     mesh = square(4)
-    refused(wording("iterations-is-0"), tl.adapt, mesh, front, 0)
-    refused(wording("the-solver-returned-nothing"), tl.adapt, mesh, lambda given: None)
-    refused(wording("has-no-new-point-array"), tl.adapt, mesh, lambda given: given)
-    refused(wording("returned-has-no-point-array-u"), tl.adapt, mesh, lambda given: square(3), field="u")
-    refused(wording("the-solver-returned-no-mesh"), tl.adapt, mesh, lambda given: 7)
-    refused(wording("the-solver-returned-an-array"), tl.adapt, mesh, lambda given: np.zeros(3))
-    refused(wording("25-values-of-the-field-are-nan"), tl.adapt, mesh, lambda given: np.full(25, np.nan))
-    refused(wording("a-function-of-a-mesh-or"), tl.adapt, mesh, 7)
-    refused(wording("give-either-error-or-elements"), tl.adapt, mesh, front, elements=10, error=0.1)
-    refused(wording("elements-are-2-numbers"), tl.adapt, mesh, front, 3, elements=[10, 20])
-    refused(wording("growth-is-for-one-number"), tl.adapt, mesh, front, 2, elements=[10, 20], growth=2)
-    refused(wording("regions-give-the-name"), tl.adapt, mesh, front, regions=np.zeros(32))
-    refused(wording("solve-did-not-converge"), tl.adapt, mesh, {"maximum_iterations": 1, "preconditioner": "none"})
-    refused(wording("the-target-takes-about"), tl.adapt, mesh, front, 1, elements=1e12)
+    rejected(wording("iterations-is-0"), tl.adapt, mesh, front, 0)
+    rejected(wording("the-solver-returned-nothing"), tl.adapt, mesh, lambda given: None)
+    rejected(wording("has-no-new-point-array"), tl.adapt, mesh, lambda given: given)
+    rejected(wording("returned-has-no-point-array-u"), tl.adapt, mesh, lambda given: square(3), field="u")
+    rejected(wording("the-solver-returned-no-mesh"), tl.adapt, mesh, lambda given: 7)
+    rejected(wording("the-solver-returned-an-array"), tl.adapt, mesh, lambda given: np.zeros(3))
+    rejected(wording("25-values-of-the-field-are-nan"), tl.adapt, mesh, lambda given: np.full(25, np.nan))
+    rejected(wording("a-function-of-a-mesh-or"), tl.adapt, mesh, 7)
+    rejected(wording("give-either-error-or-elements"), tl.adapt, mesh, front, elements=10, error=0.1)
+    rejected(wording("elements-are-2-numbers"), tl.adapt, mesh, front, 3, elements=[10, 20])
+    rejected(wording("growth-is-for-one-number"), tl.adapt, mesh, front, 2, elements=[10, 20], growth=2)
+    rejected(wording("regions-give-the-name"), tl.adapt, mesh, front, regions=np.zeros(32))
+    rejected(wording("solve-did-not-converge"), tl.adapt, mesh, {"maximum_iterations": 1, "preconditioner": "none"})
+    rejected(wording("the-target-takes-about"), tl.adapt, mesh, front, 1, elements=1e12)
     points = [(0, 0), (1, 0), (1, 1), (0, 1)]
-    refused(wording("neither-triangles-nor-tetrahedra"), tl.adapt, (points, {"quadrilateral": [[0, 1, 2, 3]]}), front)
-    refused("pdee", tl.adapt, mesh, {"pdee": "poisson"})
+    rejected(wording("neither-triangles-nor-tetrahedra"), tl.adapt, (points, {"quadrilateral": [[0, 1, 2, 3]]}), front)
+    rejected("pdee", tl.adapt, mesh, {"pdee": "poisson"})
     state = {"calls": 0}
 
     def failing(given):

@@ -4,7 +4,7 @@ facets of each tag their area."""
 
 import numpy as np
 import tautline as tl
-from checks import refused, run_tests, wording
+from checks import rejected, run_tests, wording
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkIdList, vtkPoints
 from vtkmodules.vtkCommonDataModel import VTK_TETRA, VTK_TRIANGLE, vtkUnstructuredGrid
@@ -154,8 +154,8 @@ def cell_points(mesh, cell: int) -> list[int]:
 
 def test_errors():
     mesh = tagged_cube(2, REGIONS[0], 0)
-    refused(wording("preset-adapt-needs"), tl.improve, mesh, "adapt")
-    refused(wording("an-adaptation-to-about"), tl.improve, mesh, "adapt", edge_length=1e-6)
+    rejected(wording("preset-adapt-needs"), tl.improve, mesh, "adapt")
+    rejected(wording("an-adaptation-to-about"), tl.improve, mesh, "adapt", edge_length=1e-6)
 
 
 run_tests(globals())

@@ -8,14 +8,14 @@ from inspect import Parameter, isfunction, signature
 
 import numpy as np
 import tautline as tl
-from checks import DATA, OUT, refused, run_tests, shell, slow, square, wording
+from checks import DATA, OUT, rejected, run_tests, shell, slow, square, wording
 from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet, vtkTable, vtkUnstructuredGrid
 
 FUNCTIONS = {name: value for name, value in vars(tl).items() if isfunction(value) and not name.startswith("_")}
 #: Arguments without a default, beside the mesh.
 NEEDED = {"domain": ("square",), "write": (OUT / "arguments.vtu",), "compare": (square(2),),
           "transfer": (square(2),), "warp": (), "adapt": ({}, 1)}
-#: What these functions take first is not a mesh.
+#: The first argument of these functions is not a mesh.
 NO_MESH = ("domain", "domains", "metrics", "metric_field", "from_arrays", "read", "read_silhouettes", "retrieval",
            "silhouette", "match", "solver_combinations", "load_metrics", "register_metric",
            "unregister_metric")  # fmt: skip
@@ -48,8 +48,8 @@ def test_unknown_keywords() -> None:
         text = outcome(function, *given, no_such_keyword=1)
         assert "no_such_keyword" in text, f"{name}: '{text}'"
         assert not positional or f"{name}()" in outcome(function), f"{name} without arguments"
-    refused(wording("did-you-mean-youngs-modulus-there-are"), tl.solve, square(2), youngs_moduls=1)
-    refused(wording("there-is-no-argument-of-perturb-fracton"), tl.perturb, square(2), fracton=1)
+    rejected(wording("did-you-mean-youngs-modulus-there-are"), tl.solve, square(2), youngs_moduls=1)
+    rejected(wording("there-is-no-argument-of-perturb-fracton"), tl.perturb, square(2), fracton=1)
 
 
 def test_no_mesh() -> None:
@@ -66,7 +66,7 @@ def test_no_mesh() -> None:
                 assert outcome(function, wrong, *others), f"{name} accepted {wrong!r}"
     denied.chmod(0)
     if os.geteuid() != 0:
-        refused(wording("cannot-be-read"), tl.quality, denied)
+        rejected(wording("cannot-be-read"), tl.quality, denied)
 
 
 def test_composite_data() -> None:
@@ -77,7 +77,7 @@ def test_composite_data() -> None:
                 outcome(function, data, OUT / "arguments.vtm")
             outcome(function, data, *NEEDED.get(name, ()))
             outcome(function, vtkMultiBlockDataSet(), *NEEDED.get(name, ()))
-    refused(wording("no-interaction-layer"), tl.peridynamics, blocks(), delta=0.2)
+    rejected(wording("no-interaction-layer"), tl.peridynamics, blocks(), delta=0.2)
 
 
 def test_empty_mesh() -> None:
@@ -87,7 +87,7 @@ def test_empty_mesh() -> None:
 
 
 def test_sizes_of_domains() -> None:
-    """Sizes that no memory holds are refused at once, before memory is allocated."""
+    """Sizes that no memory holds are rejected at once, before memory is allocated."""
     start = time.monotonic()
     for options in ({"element_size": 1e-9}, {"element_size": 0}, {"element_size": -1}, {"element_size": float("nan")},
                     {"element_size": float("inf")}, {"aspect_ratio": 1e9}, {"aspect_ratio": 0.5},
@@ -106,7 +106,7 @@ def test_sizes_of_domains() -> None:
     assert wording("element-size-is") in shell("domain", "square", "--element-size", "1e-9", "-o", file, code=1)
     assert wording("element-size-is") in shell("domain", "square", "--element-size", "0", "-o", file, code=1)
     assert "cells" in shell("domain", "rectangle", "--cells", "99999999999", "-o", file, code=1)
-    source = tl.vtkDomainSource()  # as in ParaView: refused by the source itself
+    source = tl.vtkDomainSource()  # as in ParaView: rejected by the source itself
     messages = []
     source.AddObserver("ErrorEvent", lambda *_: messages.append(1))
     source.GetExecutive().AddObserver("ErrorEvent", lambda *_: None)
@@ -121,7 +121,7 @@ def test_sizes_of_domains() -> None:
 #: Values of types that an argument may not have.
 WRONG = (None, object(), "text", 1.5, -3, [], {}, b"x", float("nan"), [1, "a"], True, np.zeros((2, 2)), [None], 10**30,
          1 + 2j, np.array("x"), "", [[1], [2, 3]])  # fmt: skip
-#: What functions take first, where it is not a mesh.
+#: First arguments of functions, where they are not meshes.
 FIRST = {"domain": ("square",), "silhouette": (DATA / "fish.png",), "match": (DATA / "fish.png",) * 2,
          "retrieval": ([DATA / "fish.png", DATA / "fish-bent.png"],), "read": (DATA / "plate.vtu",),
          "times": (DATA / "plate.vtu",), "write": (square(2), "wrong.vtu"), "compare": (square(2),) * 2,
@@ -168,7 +168,7 @@ def test_wrong_values() -> None:
 
 
 def test_types() -> None:
-    """Wrong types are errors that say what is expected; they are not taken for something else."""
+    """Wrong types are errors that state the expected type; they are not interpreted in another way."""
     for options, text in (
         ({"boundary": None}, "boundary is None"),
         ({"hold_worst": "no"}, wording("true-or-false-is-expected")),
@@ -180,12 +180,12 @@ def test_types() -> None:
         ({"utopia": "text"}, "utopia"),
         ({"objectives": 3}, "objectives is 3"),
     ):
-        refused(text, tl.optimize, square(2), **options)
-    refused(wording("rows-of-different-lengths"), tl.warp, square(2), transform={"rotate": 3}, moved=[[1], [2, 3]])
+        rejected(text, tl.optimize, square(2), **options)
+    rejected(wording("rows-of-different-lengths"), tl.warp, square(2), transform={"rotate": 3}, moved=[[1], [2, 3]])
     for wrong in (None, 3, b"imr", {"imr": 1}):
-        refused(wording("a-list-is-expected"), tl.quality, square(2), wrong)
-        refused("criteria", tl.quality, square(2), criteria=wrong or 3)
-    refused(wording("a-text-is-expected"), tl.solve, square(2), solution_name=None)
+        rejected(wording("a-list-is-expected"), tl.quality, square(2), wrong)
+        rejected("criteria", tl.quality, square(2), criteria=wrong or 3)
+    rejected(wording("a-text-is-expected"), tl.solve, square(2), solution_name=None)
     assert tl.optimize(square(2), threads=np.int64(1), hold_worst=np.True_, time_limit=np.float32(9)).inverted == 0
     assert tl.optimize(square(2), hold_worst=1, maximum_iterations=3.0).inverted == 0
 

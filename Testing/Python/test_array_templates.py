@@ -10,7 +10,7 @@ from importlib.util import find_spec
 
 import numpy as np
 import tautline as tl
-from checks import DATA, OUT, points, refused, run_tests, shell, wording
+from checks import DATA, OUT, points, rejected, run_tests, shell, wording
 from tautline import _array_templates
 from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet, vtkUnstructuredGrid
 from vtkmodules.vtkIOExodus import vtkExodusIIWriter
@@ -93,7 +93,7 @@ def grid_of(mesh) -> vtkUnstructuredGrid:
 
 
 def test_exodus():
-    """A copy of as many bytes, of which only those of the coordinates differ; two element blocks share their points."""
+    """A copy of as many bytes, in which only the coordinates differ; two element blocks share their points."""
     source, target = exodus("one.e", grid_of(tl.read(BRACKET))), FOLDER / "out.e"
     result = tl.perturb(source, fraction=0.4)
     assert tl.write(result, target) == [str(target)]
@@ -118,7 +118,7 @@ def test_exodus():
     mesh.GetBlock(1).GetPoints().SetPoint(4, 0.1, 0.1, 0.1)
     mesh.GetBlock(0).GetPoints().SetPoint(4, 0.2, 0.1, 0.1)
     before = target.read_bytes()
-    refused(wording("to-different-places"), tl.write, mesh, target, template=source)
+    rejected(wording("to-different-places"), tl.write, mesh, target, template=source)
     assert target.read_bytes() == before
 
 
@@ -129,18 +129,18 @@ def test_damaged():
     for size in (4, 40, 200, 500):
         source.write_bytes(content[:size])
         with open(source, "rb") as file:
-            refused("damaged.e", _array_templates._netcdf_parts, str(source), file)
+            rejected("damaged.e", _array_templates._netcdf_parts, str(source), file)
     mesh = tl.perturb(FOLDER / "one.e", fraction=0.4).mesh
     target = FOLDER / "none.e"
     target.unlink(missing_ok=True)
-    refused(wording("has-other-cells"), tl.write, tl.read(BRACKET), target, template=FOLDER / "two.e")
+    rejected(wording("has-other-cells"), tl.write, tl.read(BRACKET), target, template=FOLDER / "two.e")
     mesh.GetPoints().SetPoint(0, np.nan, 0, 0)
-    refused(wording("coordinate-is-not-finite"), tl.write, mesh, target, template=FOLDER / "one.e")
+    rejected(wording("coordinate-is-not-finite"), tl.write, mesh, target, template=FOLDER / "one.e")
     assert not target.exists()
 
 
 def test_hdf5():
-    """All arrays stay but the coordinates, which are those of the result."""
+    """All arrays stay except the coordinates, which come from the result."""
     if not H5PY:
         return
     sources = [cgns("one.cgns", 1), cgns("two.cgns", 2)]
@@ -171,14 +171,14 @@ def test_without_h5py():
     found = _array_templates.find_spec
     _array_templates.find_spec = lambda name: None
     try:
-        refused(wording("apt-get-install-python3-h5py"), _array_templates.rewrite_arrays, str(BRACKET), str(target),
+        rejected(wording("apt-get-install-python3-h5py"), _array_templates.rewrite_arrays, str(BRACKET), str(target),
                 ".med", [], [])  # fmt: skip
     finally:
         _array_templates.find_spec = found
     assert target.read_text() == "older"
     source = FOLDER / "old.cgns"
     source.write_bytes(_array_templates.ADF + b" Database Version A02011>")
-    refused(wording("cgns-convert"), _array_templates.rewrite_arrays, str(source), str(target), ".cgns", [], [])
+    rejected(wording("cgns-convert"), _array_templates.rewrite_arrays, str(source), str(target), ".cgns", [], [])
 
 
 def test_default():
@@ -223,11 +223,11 @@ def test_shell():
     assert wording("no-writer-for-e") in shell("convert", BRACKET, target, code=1)
     command = [sys.executable, "-m", "tautline", "improve", source, "-o", target]
     assert wording("no-writer-for-e") in subprocess.run(command, capture_output=True, text=True).stderr
-    refused(wording("no-writer-for-e"), tl.write, tl.read(source), target)
+    rejected(wording("no-writer-for-e"), tl.write, tl.read(source), target)
     shutil.copy(source, FOLDER / "lost.e")
     result = tl.perturb(FOLDER / "lost.e", fraction=0.3)
     (FOLDER / "lost.e").unlink()
-    refused(wording("no-writer-for-e"), tl.write, result, target)
+    rejected(wording("no-writer-for-e"), tl.write, result, target)
 
 
 run_tests(globals())

@@ -8,7 +8,7 @@ import sys
 
 import numpy as np
 import tautline as tl
-from checks import DATA, OUT, refused, run_tests, square, wording
+from checks import DATA, OUT, rejected, run_tests, square, wording
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkImageData, vtkMultiBlockDataSet, vtkRectilinearGrid, vtkUnstructuredGrid
 
@@ -18,7 +18,7 @@ TET = [[0, 1, 2, 3]]
 
 
 def test_views() -> None:
-    """What is written to an array is in the mesh, and what VTK has is in the array."""
+    """Values written to an array are in the mesh, and VTK's values are in the array."""
     mesh = tl.read(PLATE)
     assert mesh.points.shape == (1190, 3) and np.shares_memory(mesh.points, vtk_to_numpy(mesh.GetPoints().GetData()))
     mesh.points[7] += (0.25, 0, 0)
@@ -48,7 +48,7 @@ def test_views() -> None:
 
 
 def test_results() -> None:
-    """The same arrays of results, in copies, too; fields of the same names are not hidden."""
+    """The same arrays of results, also in copies; fields of the same names are not hidden."""
     result = tl.quality(PLATE, "imr")
     for one in (result, copy.copy(result), copy.deepcopy(result), pickle.loads(pickle.dumps(result))):
         assert (one.points == result.mesh.points).all() and one.cells["tri"].shape == (1625, 3)
@@ -63,7 +63,7 @@ def test_results() -> None:
     assert not hasattr(tl.solver_study(PLATE, combinations=[1]), "points")
     blocks = vtkMultiBlockDataSet()
     blocks.SetBlock(0, square(2))
-    refused(wording("take-one-of-its-blocks"), lambda: tl.quality(blocks).points)
+    rejected(wording("take-one-of-its-blocks"), lambda: tl.quality(blocks).points)
     assert not hasattr(result, "no_such_field")
     for made in (tl.domain("square"), tl.interaction_layer(square(3), 0.3), square(3), tl.triangle_mesh(
             DATA / "plate.poly").mesh, tl.metric_field(dimensions=(5, 4)).mesh):  # fmt: skip
@@ -109,22 +109,22 @@ def test_other_grids() -> None:
 def test_wrong_arrays() -> None:
     mesh = tl.read(PLATE)
     for values in (3, [1, 2], "text", None, [[1], [2, 3]], ["a"] * 1190, object()):
-        refused("'x'", mesh.point_data.__setitem__, "x", values)
+        rejected("'x'", mesh.point_data.__setitem__, "x", values)
     for name in (None, "", 3):
-        refused(wording("the-name-of-an-array-is"), mesh.cell_data.__setitem__, name, np.zeros(1913))
+        rejected(wording("the-name-of-an-array-is"), mesh.cell_data.__setitem__, name, np.zeros(1913))
     for points in (3, None, np.zeros((3, 3)), [["a"]], mesh.points[:, :2]):
-        refused("points", setattr, mesh, "points", points)
+        rejected("points", setattr, mesh, "points", points)
     mesh.points = mesh.points + 1
     assert mesh.GetPoint(0)[2] == 1
     for wrong in ("nope", None, 3):
-        refused(wording("there-is-no-array-of-points"), lambda: mesh.point_data[wrong])
-        refused(wording("there-is-no-cell-type"), lambda: mesh.cells[wrong])
-    refused(wording("did-you-mean-triangle"), lambda: mesh.cells["triangel"])
+        rejected(wording("there-is-no-array-of-points"), lambda: mesh.point_data[wrong])
+        rejected(wording("there-is-no-cell-type"), lambda: mesh.cells[wrong])
+    rejected(wording("did-you-mean-triangle"), lambda: mesh.cells["triangel"])
     assert mesh.point_data.get("nope") is None and mesh.cells.get("nope", 3) == 3
     for cells in ([("tetra", [[0, 1, 2]])], [("tetrahedrn", TET)], [("wedge", TET)], [("wedge", 3)], [(3, TET)],
                   [("tetra", TET), 3], [("tetra",)], [], {3: TET}, None, "tetra", [("tetra", None)]):  # fmt: skip
-        refused("cells", tl.from_arrays, CORNERS, cells)
-    refused(wording("did-you-mean-tetrahedron"), tl.from_arrays, CORNERS, [("tetrahedrn", TET)])
+        rejected("cells", tl.from_arrays, CORNERS, cells)
+    rejected(wording("did-you-mean-tetrahedron"), tl.from_arrays, CORNERS, [("tetrahedrn", TET)])
 
 
 def test_metric_names() -> None:
@@ -144,12 +144,12 @@ def test_metric_names() -> None:
         result.statistics["mu_3"]
     except KeyError as error:
         assert isinstance(error, tl.Error) and "mu_shape" in str(error) and pickle.loads(pickle.dumps(error))
-    refused(wording("did-you-mean-imr"), tl.quality, PLATE, "imrr")
-    refused(wording("did-you-mean-rr-radius-ratio"), tl.quality, PLATE, "radius ratoi")
-    refused(wording("did-you-mean-scaled-jacobian"), tl.optimize, PLATE, ["scaled_jacobain"])
-    refused(wording("did-you-mean-scaled-jacobian"), tl.optimize, PLATE, worst_metric="scaled_jacobain")
-    refused(wording("did-you-mean-scaled-jacobian"), tl.improve, DATA / "bracket.vtu", metric="scaled_jacobain")
-    refused(wording("did-you-mean-fem"), tl.quality, PLATE, criteria="fen")
+    rejected(wording("did-you-mean-imr"), tl.quality, PLATE, "imrr")
+    rejected(wording("did-you-mean-rr-radius-ratio"), tl.quality, PLATE, "radius ratoi")
+    rejected(wording("did-you-mean-scaled-jacobian"), tl.optimize, PLATE, ["scaled_jacobain"])
+    rejected(wording("did-you-mean-scaled-jacobian"), tl.optimize, PLATE, worst_metric="scaled_jacobain")
+    rejected(wording("did-you-mean-scaled-jacobian"), tl.improve, DATA / "bracket.vtu", metric="scaled_jacobain")
+    rejected(wording("did-you-mean-fem"), tl.quality, PLATE, criteria="fen")
 
 
 def test_error_names() -> None:

@@ -35,7 +35,7 @@ def check_version() -> None:
 
 
 def check_sentences() -> None:
-    """What each kind of wrong Python is told; the right one is told nothing."""
+    """The message for each kind of wrong Python; none for the right one."""
     build = json.loads((PACKAGE / "build.json").read_text())
     assert _build.problem(build) == ""
     assert _build.problem({}).startswith("these are the sources")

@@ -6,7 +6,7 @@ import warnings
 
 import numpy as np
 import tautline as tl
-from checks import DATA, OUT, points, refused, run_tests, shell, wording
+from checks import DATA, OUT, points, rejected, run_tests, shell, wording
 from tautline._certificate import FORMAT, REFUTED
 from tautline._determinants import above, coefficients, derivatives, domain_of
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
@@ -99,7 +99,7 @@ def test_sample():
 
 
 def test_turned_wedges():
-    """Curved wedges in the order of nodes that fewer programs have are valid, too, and announced."""
+    """Curved wedges in the order of nodes that fewer programs have are also valid, and announced."""
     for kind in (26, 32, 73):
         for turned in (False, True):
             mesh = cells_of((kind,))
@@ -120,10 +120,10 @@ def test_tampering():
     mesh.GetPoints().SetPoint(mesh.GetCell(0).GetPointId(4), 0.5, 0.25, 0.125)
     assert not tl.verify_certificate(mesh, FOLDER / "part.json")
     (FOLDER / "other.json").write_text("{}")
-    refused(wording("is-no-certificate-of-this-version"), tl.verify_certificate, mesh, FOLDER / "other.json")
+    rejected(wording("is-no-certificate-of-this-version"), tl.verify_certificate, mesh, FOLDER / "other.json")
     (FOLDER / "other.json").write_text("[1, 2")
-    refused(wording("is-no-json"), tl.verify_certificate, mesh, FOLDER / "other.json")
-    refused(wording("has-no-list-of-elements"), tl.verify_certificate, mesh, dict(made, elements=[1]))
+    rejected(wording("is-no-json"), tl.verify_certificate, mesh, FOLDER / "other.json")
+    rejected(wording("has-no-list-of-elements"), tl.verify_certificate, mesh, dict(made, elements=[1]))
 
 
 def test_shell():

@@ -60,5 +60,5 @@ for ranks in (2, 3, 4):
     check_table(found["more blocks"][0], one["more blocks"][0], f"{ranks} ranks, more blocks")
     # An error on all ranks, and none waits.
     for case in ("order", "cells", "no ids", "copies"):
-        assert found[f"refused {case}"] == [0, ""], found[f"refused {case}"]
+        assert found[f"rejected {case}"] == [0, ""], found[f"rejected {case}"]
     print(ranks, "ranks:", found["slabs, tree"][3].splitlines()[0])

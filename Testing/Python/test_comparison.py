@@ -3,7 +3,7 @@
 
 import numpy as np
 import tautline as tl
-from checks import DATA, refused, run_tests, wording
+from checks import DATA, rejected, run_tests, wording
 
 BRACKET, PLATE = (DATA / f"{name}.vtu" for name in ("bracket", "plate"))
 
@@ -18,8 +18,8 @@ def test_compare():
     assert (result.displacement == first.displacement).all()
     assert set(np.unique(result.change)) == {-1, 0, 1}
     assert (tl.compare(mesh, mesh).change == 0).all()
-    refused("", tl.compare, mesh, PLATE)
-    refused(wording("there-is-no-such-file"), tl.compare, mesh, "absent.vtu")
+    rejected("", tl.compare, mesh, PLATE)
+    rejected(wording("there-is-no-such-file"), tl.compare, mesh, "absent.vtu")
 
 
 run_tests(globals())

@@ -9,7 +9,7 @@ from importlib.util import find_spec
 
 import numpy as np
 import tautline as tl
-from checks import DATA, OUT, points, refused, run_tests, shell, wording
+from checks import DATA, OUT, points, rejected, run_tests, shell, wording
 from tautline._arrays import leaves
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkUnstructuredGrid
@@ -108,7 +108,7 @@ def test_solver_files():
 
 
 def test_deck_numbers():
-    """CalculiX reads twenty characters of a number: no coordinate of a deck is longer, written anew or as a copy."""
+    """CalculiX reads twenty characters of a number: no coordinate of a deck is longer, in a new file or in a copy."""
     if not MESHIO:
         return
     grid = grid_of((24,))
@@ -127,7 +127,7 @@ def test_deck_numbers():
 
 
 def test_exodus():
-    """What VTK's writer has: tetrahedra; as a copy with other coordinates, too."""
+    """The cells of VTK's writer: tetrahedra; also as a copy with other coordinates."""
     from vtkmodules.vtkIOExodus import vtkExodusIIWriter
 
     grid = grid_of((24,))
@@ -146,7 +146,7 @@ def test_exodus():
 
 
 #: Where Exodus' elements have the nodes of VTK's cells. S. Sjaardema et al., "EXODUS II: A finite element data model"
-#: (2006), section 4.8: of hexahedra and wedges, edges along the axis come before those of the second face; of the
+#: (2006), section 4.8: in hexahedra and wedges, edges along the axis come before edges of the second face; in the
 #: hexahedron of 27 nodes the center comes before the faces: bottom, top, left, right, front, back.
 EXODUS = {
     24: ("TETRA10", list(range(10))), 22: ("TRI6", list(range(6))), 23: ("QUAD8", list(range(8))),
@@ -291,14 +291,14 @@ def test_mfem():
     shell("convert", ORDERS, FOLDER / "shell.mesh", "--mfem", "L2", code=1)  # pyramids
     shell("convert", DATA / "pipe.mesh", FOLDER / "shell.mesh", "--mfem", "L2")
     assert "L2_T1_3D_P3" in (FOLDER / "shell.mesh").read_text()
-    refused(wording("has-other-cells"), tl.write, quadratic, FOLDER / "no.mesh", template=DATA / "pipe.mesh")
+    rejected(wording("has-other-cells"), tl.write, quadratic, FOLDER / "no.mesh", template=DATA / "pipe.mesh")
 
 
-def test_refused():
+def test_rejected():
     grid = vtkUnstructuredGrid()
     grid.SetPoints(grid_of((9,)).GetPoints())
     grid.InsertNextCell(70, 6, [0, 1, 2, 3, 4, 5])
-    refused(wording("gmsh-orders-1-to-4"), tl.write, grid, FOLDER / "c.msh")
+    rejected(wording("gmsh-orders-1-to-4"), tl.write, grid, FOLDER / "c.msh")
 
 
 run_tests(globals())

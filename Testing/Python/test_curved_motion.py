@@ -3,7 +3,7 @@
 
 import numpy as np
 import tautline as tl
-from checks import DATA, OUT, points, refused, run_tests, shell, wording
+from checks import DATA, OUT, points, rejected, run_tests, shell, wording
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkFiltersGeometry import vtkGeometryFilter
 
@@ -61,7 +61,7 @@ def test_optimize():
         after = tl.quality(result.mesh, "imr")
         assert (result.inverted, after.inverted) == (0, 0)
         assert after.values["imr"].mean() < before.values["imr"].mean()
-    refused(wording("set-maximum-displacement-to-0"), tl.optimize, mesh, limits=0.1)
+    rejected(wording("set-maximum-displacement-to-0"), tl.optimize, mesh, limits=0.1)
 
 
 def test_geometry():
@@ -76,7 +76,7 @@ def test_geometry():
     for result in (tl.untangle(mesh, geometry=surface), tl.untangle(mesh)):
         assert result.inverted == 0
         assert tl.quality(result.mesh).inverted == 0
-    refused(wording("the-geometry-has-volume-cells"), tl.untangle, mesh, geometry=BRACKET)
+    rejected(wording("the-geometry-has-volume-cells"), tl.untangle, mesh, geometry=BRACKET)
 
 
 def test_threads():

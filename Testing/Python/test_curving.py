@@ -3,7 +3,7 @@
 
 import numpy as np
 import tautline as tl
-from checks import DATA, OUT, points, refused, run_tests, shell, square, wording
+from checks import DATA, OUT, points, rejected, run_tests, shell, square, wording
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet, vtkPolyData, vtkUnstructuredGrid
 
@@ -63,7 +63,7 @@ def test_smooth():
     assert abs(outer[0].min() - np.cos(np.pi / 12)) < 1e-12
     assert abs(outer[1] - 1).max() < 1e-4, outer
     assert 0.033 < smooth.largest_offset < 0.035 and straight.largest_offset == 0
-    # What is sharp stays: below the angle of the polygon, all points are corners.
+    # Sharp corners stay: below the angle of the polygon, all points are corners.
     assert tl.curve(mesh, feature_angle=10).largest_offset < 1e-12
     # Curved cells keep their shape at a higher order.
     again = tl.curve(smooth, 4)
@@ -78,8 +78,8 @@ def test_geometry():
     fine = ring(240)
     curved = tl.curve(ring(12), 3, geometry=fine)
     assert curved.distance < 1e-3 < 0.03 < curved.distance_before, curved
-    refused(wording("straight-cells-on-a-geometry"), tl.curve, ring(12), surface="straight", geometry=fine)
-    refused(wording("geometry-is-empty"), tl.curve, ring(12), geometry=vtkUnstructuredGrid())
+    rejected(wording("straight-cells-on-a-geometry"), tl.curve, ring(12), surface="straight", geometry=fine)
+    rejected(wording("geometry-is-empty"), tl.curve, ring(12), geometry=vtkUnstructuredGrid())
 
 
 def test_kinds_of_data():
@@ -105,15 +105,15 @@ def test_threads():
     assert (points(one.mesh) == points(many.mesh)).all() and one.summary == many.summary
 
 
-def test_refused():
-    refused("order", tl.curve, ring(12), 5)
+def test_rejected():
+    rejected("order", tl.curve, ring(12), 5)
     corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0.5, 0.5, 1]]
     pyramid = tl.from_arrays(corners, {"pyramid": [[0, 1, 2, 3, 4]]})
     assert types(tl.curve(pyramid, 2).mesh) == {37} and types(tl.curve(pyramid, 2, serendipity=True).mesh) == {27}
-    refused(wording("no-pyramids-of-order"), tl.curve, pyramid, 3)
+    rejected(wording("no-pyramids-of-order"), tl.curve, pyramid, 3)
     broken = square(2)
     points(broken)[0, 0] = np.nan
-    refused(wording("not-a-finite-number"), tl.curve, broken)
+    rejected(wording("not-a-finite-number"), tl.curve, broken)
 
 
 def test_command():

@@ -9,7 +9,7 @@ import time
 from pathlib import Path
 
 import tautline as tl
-from checks import DATA, OUT, SLOW, refused, shell, square, wording
+from checks import DATA, OUT, SLOW, rejected, shell, square, wording
 from tautline import _reading
 from vtkmodules.vtkCommonDataModel import (
     vtkMultiBlockDataSet,
@@ -89,7 +89,7 @@ def signature(mesh) -> tuple:
 def is_beginning(part: tuple, whole: tuple) -> bool:
     """Whether a file cut between two sections was read: all of the points, and the first of the arrays or cells.
 
-    The last number may be shorter: nobody can see that of text.
+    The last number may be shorter: text does not show it.
     """
     if len(whole) == 1:  # the only block
         return len(part) == 1 and is_beginning(part[0], whole[0])
@@ -103,7 +103,7 @@ def is_beginning(part: tuple, whole: tuple) -> bool:
 
 def test_cut_legacy_files() -> None:
     file = FOLDER / "cut.vtk"
-    refused_cuts = cuts = 0
+    rejected_cuts = cuts = 0
     for name, mesh in meshes().items():
         for version in VERSIONS:
             for binary in (False, True):
@@ -122,12 +122,12 @@ def test_cut_legacy_files() -> None:
                         part = signature(tl.read(file))
                     except tl.Error as error:
                         assert str(file) in str(error), error
-                        refused_cuts += 1
+                        rejected_cuts += 1
                     else:
                         kind = f"{name}, version {version}, {'binary' if binary else 'text'}, {size} bytes"
                         assert is_beginning(part, whole), f"{kind}: read as {part[:3]}, not {whole[:3]}"
-    print(f"  {refused_cuts} of {cuts} cut files refused")
-    assert refused_cuts > 0.95 * cuts
+    print(f"  {rejected_cuts} of {cuts} cut files rejected")
+    assert rejected_cuts > 0.95 * cuts
 
 
 def test_chunks_of_legacy_files() -> None:
@@ -153,7 +153,7 @@ def test_cut_xml_files() -> None:
         content = file.read_bytes()
         for size in range(0, len(content.rstrip()), max(1, len(content) // CUTS)):
             file.write_bytes(content[:size])
-            refused(str(file), tl.read, file)
+            rejected(str(file), tl.read, file)
 
 
 def test_cut_surfaces() -> None:
@@ -163,7 +163,7 @@ def test_cut_surfaces() -> None:
         content = file.read_bytes()
         for size in range(0, len(content.rstrip()), max(1, len(content) // CUTS)):
             file.write_bytes(content[:size])
-            refused(str(file), tl.read, file)
+            rejected(str(file), tl.read, file)
 
 
 def test_first_bytes() -> None:
@@ -171,7 +171,7 @@ def test_first_bytes() -> None:
     file = FOLDER / "head.vtk"
     tl.write(square(300), file)
     file.write_bytes(file.read_bytes()[:100])
-    refused("truncated", tl.read, file)
+    rejected("truncated", tl.read, file)
     assert "truncated" in shell("quality", file, code=1)
 
 
@@ -211,7 +211,7 @@ def test_malformed_lists() -> None:
 
 
 def test_not_a_file() -> None:
-    """Pipes, devices and directories are refused at once, by every reader."""
+    """Pipes, devices and directories are rejected at once, by every reader."""
     folder = FOLDER / "not-files"
     folder.mkdir(exist_ok=True)
     start = time.monotonic()
@@ -225,39 +225,39 @@ def test_not_a_file() -> None:
         zero.symlink_to("/dev/zero")
         directory.mkdir(exist_ok=True)
         loop.symlink_to(loop.name)
-        refused(wording("is-not-a-regular-file"), tl.read, pipe)
-        refused(wording("is-not-a-regular-file"), tl.read, zero)
-        refused(wording("is-a-directory"), tl.read, directory)
-        refused(wording("cannot-be-read"), tl.read, loop)
-        refused(wording("there-is-no-such-file"), tl.read, folder / f"absent{ending}")
-    refused(wording("is-not-a-regular-file"), tl.silhouette, folder / "pipe.vtk")
-    refused(wording("is-not-a-regular-file"), tl.read_silhouettes, folder / "zero.vtk")
+        rejected(wording("is-not-a-regular-file"), tl.read, pipe)
+        rejected(wording("is-not-a-regular-file"), tl.read, zero)
+        rejected(wording("is-a-directory"), tl.read, directory)
+        rejected(wording("cannot-be-read"), tl.read, loop)
+        rejected(wording("there-is-no-such-file"), tl.read, folder / f"absent{ending}")
+    rejected(wording("is-not-a-regular-file"), tl.silhouette, folder / "pipe.vtk")
+    rejected(wording("is-not-a-regular-file"), tl.read_silhouettes, folder / "zero.vtk")
     (folder / "list.csv").write_text("file,class\npipe.vtk,a\n")
-    refused(wording("is-not-a-regular-file"), tl.read_silhouettes, folder / "list.csv")
+    rejected(wording("is-not-a-regular-file"), tl.read_silhouettes, folder / "list.csv")
     (folder / "blocks.vtm").write_text(
         '<VTKFile type="vtkMultiBlockDataSet"><vtkMultiBlockDataSet><DataSet index="0" file="pipe.vtu"/>'
         "</vtkMultiBlockDataSet></VTKFile>"
     )
-    refused(wording("is-not-a-regular-file"), tl.read, folder / "blocks.vtm")
+    rejected(wording("is-not-a-regular-file"), tl.read, folder / "blocks.vtm")
     assert time.monotonic() - start < 5.0
 
 
 def test_images() -> None:
-    """A truncated image, and a file that is none of the formats, is refused by name; VTK crashes on some."""
+    """A truncated image, and a file that is none of the formats, is rejected by name; VTK crashes on some."""
     folder = FOLDER / "images"
     shutil.rmtree(folder, ignore_errors=True)
     shutil.copytree(Path(DATA).parent / "Testing/Fuzz/Corpus/image", folder)
     files = sorted(folder.iterdir())
     blocks = tl.read_silhouettes(folder)
     assert blocks.GetNumberOfBlocks() == len(files) - 1, "all but the TGA file"
-    refused(wording("it-is-none-of-png-jpeg-tiff-2"), tl.silhouette, folder / "short.tga")
+    rejected(wording("it-is-none-of-png-jpeg-tiff-2"), tl.silhouette, folder / "short.tga")
     for file in files:
         whole = file.read_bytes()
         for size in range(0, len(whole), max(1, len(whole) // CUTS)):
             file.write_bytes(whole[:size])
-            refused(str(file), tl.silhouette, file)
+            rejected(str(file), tl.silhouette, file)
             if size > 8 and file.suffix != ".tga":
-                refused(f"{file}: the image cannot be read", tl.read_silhouettes, folder)
+                rejected(f"{file}: the image cannot be read", tl.read_silhouettes, folder)
         file.write_bytes(whole)
 
 
@@ -278,7 +278,7 @@ def test_crash_of_a_reader() -> None:
     file.write_text(POLYHEDRON)
     assert tl.read(file).GetNumberOfCells() == 1
     file.write_text(POLYHEDRON.replace("4 3 0 2 1", "4 30000000 0 2 1"))
-    refused(f"{file}: " + wording("its-reader-ended-by"), tl.read, file)
+    rejected(f"{file}: " + wording("its-reader-ended-by"), tl.read, file)
     assert wording("its-reader-ended-by") in shell("quality", file, code=1)
 
 
@@ -292,17 +292,17 @@ def test_limits_of_a_reader() -> None:
         setattr(_reading, name, value)
         try:
             if name == "_SECONDS":
-                refused(text, tl.read, file)
+                rejected(text, tl.read, file)
             else:
-                refused("limits.ply", tl.read, file)
+                rejected("limits.ply", tl.read, file)
         finally:
             setattr(_reading, name, before)
     folder = Path.cwd()
     os.chdir(FOLDER)
     try:
-        refused("limits.avs: ", tl.read, "limits.avs")
+        rejected("limits.avs: ", tl.read, "limits.avs")
         Path("limits.avs").write_text("4 1 0 0 0\n1 0 0 0\n")
-        refused("limits.avs: " + wording("the-file-is-truncated"), tl.read, "limits.avs")
+        rejected("limits.avs: " + wording("the-file-is-truncated"), tl.read, "limits.avs")
     finally:
         os.chdir(folder)
 
@@ -318,7 +318,7 @@ def test_readers_without_a_reason() -> None:
         file = FOLDER / name
         file.write_text(text)
         for read in (tl.read, tl.times):
-            refused(name, read, file)
+            rejected(name, read, file)
             try:
                 read(file)
             except tl.Error as error:
@@ -350,7 +350,7 @@ density, kg
 
 
 def test_cut_ucd() -> None:
-    """The counts of the header are those of the file; only the last number may be cut."""
+    """The counts of the header match the file; only the last number may be cut."""
     file = FOLDER / "cut.avs"
     file.write_text(UCD)
     mesh = tl.read(file)
@@ -358,11 +358,11 @@ def test_cut_ucd() -> None:
     ends = range(1, len(UCD) - len("2.75\n"), 1 if SLOW else 9)
     for end in ends:
         file.write_text(UCD[:end])
-        refused("cut.avs", tl.read, file)
+        rejected("cut.avs", tl.read, file)
     for old, new in (("5 2 2 1 0", "5 3 2 1 0"), ("5 2 2 1 0", "6 2 2 1 0"), ("5 2 2 1 0", "-5 2 2 1 0"),
                      ("tet 1 2 3 4", "hex 1 2 3 4"), ("2 1 1\n", "x 1 1\n")):  # fmt: skip
         file.write_text(UCD.replace(old, new, 1))
-        refused("cut.avs", tl.read, file)
+        rejected("cut.avs", tl.read, file)
 
 
 def test_no_permission() -> None:
@@ -377,7 +377,7 @@ def test_no_permission() -> None:
         if child == 0:
             try:
                 os.setuid(65534)
-                refused(wording("cannot-be-read-permission-denied"), tl.read, file)
+                rejected(wording("cannot-be-read-permission-denied"), tl.read, file)
                 os._exit(0)
             finally:
                 os._exit(1)

@@ -6,8 +6,8 @@ from argparse import Namespace
 
 import numpy as np
 import tautline as tl
-from checks import OUT, refused, wording
-from study_checks import Studies, refused_command
+from checks import OUT, rejected, wording
+from study_checks import Studies, rejected_command
 from tautline._errors import Messages
 from tautline.studies import _report, _verdicts, decomposition
 from vtkmodules.vtkCommonCore import vtkIntArray
@@ -43,7 +43,7 @@ def test_numbers() -> None:
             assert halo["random"][n] > 2 * max(halo["graph"][n], halo["kd_tree"][n]), (domain, n, halo)
             assert all(1000 * kilobytes[m][n] >= 32 * messages[m][n] > 0 for m in METHODS), (domain, n)
         assert halo["graph"]["8"] < halo["slabs"]["8"], (domain, halo)
-        near = studies.column("decomposition", f"{domain}_slabs", "parts", "neighbours")
+        near = studies.column("decomposition", f"{domain}_slabs", "parts", "neighbors")
         assert near["2"] == 1 and 2 <= near["8"] <= 5, near  # thin slabs touch those behind the next
 
 
@@ -72,7 +72,7 @@ def test_divisions() -> None:
     of = {name: [table.GetValueByName(row, name).ToInt() for row in (0, 1)]
           for name in ("Cells", "Points", "Free Points", "Halo Points", "Neighbours")}
     assert of["Cells"] == [24, 24] and sum(of["Points"]) == 9 * 7 and sum(of["Free Points"]) == 7 * 5, of
-    # Of the 7 points between the parts each is a copy on one side; an owned one needs points of the other side's cells.
+    # Each of the 7 points between the parts is a copy on one side; an owned one needs points of the other side's cells.
     assert of["Neighbours"] == [1, 1] and 14 <= sum(of["Halo Points"]) <= 7 + 2 * 7 and min(of["Halo Points"]) > 0, of
     assert decomposer.GetFreePoints() == 35 and 4 <= decomposer.GetNumberOfSets() <= 9
 
@@ -85,19 +85,19 @@ def test_errors() -> None:
                        ("needs a mesh", lambda: decomposer.Count(None, array, table)),
                        ("needs a mesh", lambda: decomposer.DivideGraph(None, array))):
         call()
-        refused(text, messages.raise_errors)
+        rejected(text, messages.raise_errors)
         messages.errors.clear()
     decomposer.SetNumberOfParts(1000000)
     decomposer.DivideGraph(mesh, array)
-    refused(wording("cannot-have-1000000-parts"), messages.raise_errors)
+    rejected(wording("cannot-have-1000000-parts"), messages.raise_errors)
     assert array.GetNumberOfValues() == 0
     for option in ("--latency=-1", "--bandwidth=0", "--latency=nan"):
-        refused_command("positive numbers are needed", "study", "decomposition", "--small", option)
+        rejected_command("positive numbers are needed", "study", "decomposition", "--small", option)
 
 
 def test_model() -> None:
     """By hand: seconds of each part; efficiency falls with ranks and grows with cells."""
-    model = decomposition.Model(halo=6.0, exponent=2 / 3, neighbours=10, sets=20, points=0.2, waiting=1.5, sent=0.5,
+    model = decomposition.Model(halo=6.0, exponent=2 / 3, neighbors=10, sets=20, points=0.2, waiting=1.5, sent=0.5,
                                 second=1e-6, latency=1e-6, bandwidth=1e9)
     parts = model.parts_of(1000, 64)
     expected = {"points": 2e-4, "waiting": 1e-6 * 1.5 * (200 * 20) ** 0.5, "messages": 2e-4,

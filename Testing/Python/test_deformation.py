@@ -5,7 +5,7 @@ import csv
 
 import numpy as np
 import tautline as tl
-from checks import DATA, OUT, points, quadratic_square, refused, run_tests, shell, wording
+from checks import DATA, OUT, points, quadratic_square, rejected, run_tests, shell, wording
 from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet
 from vtkmodules.vtkCommonTransforms import vtkTransform
 from vtkmodules.vtkFiltersSources import vtkSphereSource
@@ -150,23 +150,24 @@ def test_methods():
     assert (both.displacement == np.concatenate([one.displacement] * 2)).all()
 
 
-def test_refused():
-    refused(wording("nothing-is-given"), tl.warp, PLATE)
-    refused(wording("displacement-and-transform-are-given"), tl.warp, PLATE, "d", transform={"rotate": 1})
-    refused(wording("method-is-magic"), tl.warp, PLATE, method="magic")
-    refused(wording("no-point-array-d"), tl.warp, PLATE, "d")
-    refused(wording("has-the-shape-3-3"), tl.warp, PLATE, np.zeros((3, 3)))
-    refused(wording("amount-is-1"), tl.warp, PLATE, amount=-1)
-    refused(wording("argument-of-warp-speed"), tl.warp, PLATE, speed=3)
-    refused(wording("transform-has-to-have-one-of"), tl.warp, PLATE, transform={"turn": 30})
-    refused(wording("no-center"), tl.warp, PLATE, transform={"translate": (1, 0, 0), "center": (0, 0, 0)})
-    refused(wording("rotate-is-far"), tl.warp, PLATE, transform={"rotate": "far"})
-    refused(wording("16-finite-numbers"), tl.warp, PLATE, transform=[1, 2, 3])
-    refused(wording("no-boundary-part-7"), tl.warp, PLATE, transform={"rotate": 30}, moved=7)
-    refused(wording("run-untangle-mesh-first"), tl.warp, DATA / "bracket-tangled.vtu", transform={"rotate": 30})
-    refused(wording("nan-or-infinite-at-179"), tl.warp, PLATE, np.full((tl.read(PLATE).GetNumberOfPoints(), 3), np.nan))
-    refused(wording("regions-are"), tl.warp, PLATE, transform={"rotate": 1}, regions="region")
-    refused("mirrors", tl.warp, PLATE, transform=np.diag([-1.0, 1, 1, 1]))
+def test_rejected():
+    rejected(wording("nothing-is-given"), tl.warp, PLATE)
+    rejected(wording("displacement-and-transform-are-given"), tl.warp, PLATE, "d", transform={"rotate": 1})
+    rejected(wording("method-is-magic"), tl.warp, PLATE, method="magic")
+    rejected(wording("no-point-array-d"), tl.warp, PLATE, "d")
+    rejected(wording("has-the-shape-3-3"), tl.warp, PLATE, np.zeros((3, 3)))
+    rejected(wording("amount-is-1"), tl.warp, PLATE, amount=-1)
+    rejected(wording("argument-of-warp-speed"), tl.warp, PLATE, speed=3)
+    rejected(wording("transform-has-to-have-one-of"), tl.warp, PLATE, transform={"turn": 30})
+    rejected(wording("no-center"), tl.warp, PLATE, transform={"translate": (1, 0, 0), "center": (0, 0, 0)})
+    rejected(wording("rotate-is-far"), tl.warp, PLATE, transform={"rotate": "far"})
+    rejected(wording("16-finite-numbers"), tl.warp, PLATE, transform=[1, 2, 3])
+    rejected(wording("no-boundary-part-7"), tl.warp, PLATE, transform={"rotate": 30}, moved=7)
+    rejected(wording("run-untangle-mesh-first"), tl.warp, DATA / "bracket-tangled.vtu", transform={"rotate": 30})
+    nowhere = np.full((tl.read(PLATE).GetNumberOfPoints(), 3), np.nan)
+    rejected(wording("nan-or-infinite-at-179"), tl.warp, PLATE, nowhere)
+    rejected(wording("regions-are"), tl.warp, PLATE, transform={"rotate": 1}, regions="region")
+    rejected("mirrors", tl.warp, PLATE, transform=np.diag([-1.0, 1, 1, 1]))
 
 
 def test_curved():
@@ -182,7 +183,7 @@ def test_curved():
     push[1, 0] = 0.05
     folded = tl.warp(mesh, displacement=push, method="femwarp")
     assert folded.inverted == 1 == (folded.validity == -1).sum() == tl.quality(folded).inverted
-    refused(wording("inverted-or-degenerate-before-anything-moves"), tl.warp, folded, transform={"rotate": 10})
+    rejected(wording("inverted-or-degenerate-before-anything-moves"), tl.warp, folded, transform={"rotate": 10})
 
 
 def test_command():

@@ -50,7 +50,7 @@ warp.TransformKind, warp.ScaleFactors = "Scaling", [2, 1, 1]
 assert moved(warp)[0] > 40
 warp.MovedPart, warp.TransformKind, warp.Direction = "Whole boundary", "Bending", [0, 1, 0]
 count = moved(warp)[0]
-assert count == 90, count  # what is before the centre is held
+assert count == 90, count  # points before the center are held
 
 # what moves
 warp.TransformKind, warp.MovedPart, warp.Parts = "Translation", "Boundary parts by number", [2]

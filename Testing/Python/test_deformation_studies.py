@@ -6,7 +6,7 @@ import dataclasses
 import numpy as np
 import tautline as tl
 from checks import OUT
-from study_checks import Studies, pictures, refused_command
+from study_checks import Studies, pictures, rejected_command
 from tautline.studies import _deformed, _meshes, _moving_findings, _verdicts, _warped, target_matrices
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
@@ -42,8 +42,8 @@ def run_all():
     for study, expected in STUDIES.items():
         studies.run(study)
         studies.check(study, *expected, stated(studies.calls[study]) if study == "deformation" else ())
-    refused_command("at least one is needed", "study", "deformation", "--repeats", "0")
-    refused_command("at least one is needed", "study", "deformation", "--seeds", "0")
+    rejected_command("at least one is needed", "study", "deformation", "--repeats", "0")
+    rejected_command("at least one is needed", "study", "deformation", "--seeds", "0")
 
 
 def check_rectangle():
@@ -127,7 +127,7 @@ def check_local_coefficients():
 
 
 def check_target_matrices():
-    """Coefficients that are the elements' areas undo the weights: FEMWARP. (4.22) by area is FEMWARP, too."""
+    """Coefficients that are the elements' areas undo the weights: FEMWARP. (4.22) by area is also FEMWARP."""
     moving = _deformed.Moving("bar", 400)
     displacement = moving.at(1.0)
     theirs = _meshes.points_of(_deformed.deform(moving.mesh, displacement, "femwarp").mesh)

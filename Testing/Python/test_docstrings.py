@@ -14,7 +14,7 @@ FUNCTIONS = {name: value for name, value in vars(tl).items() if isfunction(value
 
 
 def sections(text: str) -> dict:
-    """The text of each section by its name; the summary is that of ""."""
+    """The text of each section by its name; the summary has the name ""."""
     parts = HEADING.split(text)
     for name, line in zip(parts[1::3], parts[2::3]):
         assert name in SECTIONS and len(line) == len(name), (name, line)

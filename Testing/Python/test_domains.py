@@ -2,7 +2,7 @@
 """The functions domain and domains, the command domain: sizes, motions, errors."""
 
 import tautline as tl
-from checks import OUT, refused, run_tests, shell, wording
+from checks import OUT, rejected, run_tests, shell, wording
 
 OUTPUT = OUT / "domains"
 OUTPUT.mkdir(parents=True, exist_ok=True)
@@ -13,9 +13,9 @@ def test_domain():
     square = tl.domain("square", element_size=0.1, aspect_ratio=4, layer_width=0.2)
     assert square.GetNumberOfCells() == 392
     assert square.GetCellData().GetArray("Reference").GetRange() == (1, 2)
-    refused(wording("there-is-no-domain-torus-there-are"), tl.domain, "torus")
-    refused(wording("cells-is-1-it"), tl.domain, "wrench", -1)
-    refused(wording("whole-numbers"), tl.domain, "square", aspect_ratio=2)
+    rejected(wording("there-is-no-domain-torus-there-are"), tl.domain, "torus")
+    rejected(wording("cells-is-1-it"), tl.domain, "wrench", -1)
+    rejected(wording("whole-numbers"), tl.domain, "square", aspect_ratio=2)
     if tl.vtkDomainSource.HasMeshing():
         cylinder = tl.domain("cylinder", cells=5000, amount=0.5)
         assert abs(cylinder.GetNumberOfCells() - 5000) < 250
@@ -23,7 +23,7 @@ def test_domain():
         moved = tl.domain("cylinder", cells=5000, amount=0.5, deformed_boundary=True)
         assert moved.GetNumberOfLines() > 0 and moved.GetNumberOfPoints() == cylinder.GetNumberOfPoints()
     else:
-        refused("TAUTLINE_MESHING=OFF", tl.domain, "cylinder")
+        rejected("TAUTLINE_MESHING=OFF", tl.domain, "cylinder")
 
 
 def test_command():

@@ -8,7 +8,7 @@ import time
 import checks
 import numpy as np
 import tautline as tl
-from checks import DATA, points, quadratic_square, refused, run_tests, shell, square, wording
+from checks import DATA, points, quadratic_square, rejected, run_tests, shell, square, wording
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 OUT = checks.OUT / "conditioning"
@@ -121,12 +121,12 @@ def test_quadratic():
     assert np.abs(turned.solution - tl.solve(mesh, solver="direct").solution).max() < 1e-12
     assert tl.condition(mesh).condition > 1
     assert tl.solver_study(mesh, combinations=[1, 13]).summary
-    refused(wording("choose-the-consistent-mass-matrix"), tl.solve, mesh, time_scheme="newmark", mass="lumped")
+    rejected(wording("choose-the-consistent-mass-matrix"), tl.solve, mesh, time_scheme="newmark", mass="lumped")
     folded = points(mesh).copy()
     folded[1] = folded[0] + 0.05 * (folded[2] - folded[0])  # the middle of an edge next to its end
     cells = vtk_to_numpy(mesh.GetCells().GetConnectivityArray()).reshape(-1, 6)
     curved = tl.from_arrays(folded[:, :2], {"triangle6": cells})
-    refused(wording("inverted-against-the-rest"), tl.solve, curved)
+    rejected(wording("inverted-against-the-rest"), tl.solve, curved)
 
 
 def test_exact():
@@ -149,15 +149,15 @@ def test_exact():
         volume = np.abs(tl.quality(mesh, ["size"]).values["size"]).sum()
         assert abs(found.solution_error - 0.5 * np.sqrt(volume)) < 1e-9 and found.gradient_error < 1e-9
     assert np.isnan(tl.solve(flat).solution_error)
-    refused(wording("is-a-number-a-vector-is-expected"), tl.solve, flat, exact="x", **body)
-    refused(wording("is-not-understood"), tl.solve, flat, exact="q + 1")
-    refused(wording("is-not-finite-at-point"), tl.solve, flat, exact="sqrt(x - 0.5)")
-    refused(wording("an-exact-solution-can-be-compared"), tl.solve, flat, exact="x", time_scheme="bdf2")
+    rejected(wording("is-a-number-a-vector-is-expected"), tl.solve, flat, exact="x", **body)
+    rejected(wording("is-not-understood"), tl.solve, flat, exact="q + 1")
+    rejected(wording("is-not-finite-at-point"), tl.solve, flat, exact="sqrt(x - 0.5)")
+    rejected(wording("an-exact-solution-can-be-compared"), tl.solve, flat, exact="x", time_scheme="bdf2")
     assert wording("errors-in-l2") in shell("solve", DATA / "plate.vtu", "--exact", "x*y")
 
 
 def test_time_steps():
-    """Heat and wave equations: eigenmodes in closed form, all solutions, histories, what is refused."""
+    """Heat and wave equations: eigenmodes in closed form, all solutions, histories, what is rejected."""
     n, steps, dt = 8, 5, 0.02
     x, y = np.meshgrid(np.linspace(0, 1, n + 1), np.linspace(0, 1, n + 1))
     corner = (np.arange(n)[:, None] * (n + 1) + np.arange(n)).ravel()
@@ -189,10 +189,10 @@ def test_time_steps():
     short = tl.solve(mesh, time_scheme="backward euler", initial=mode**3, preconditioner="none", maximum_iterations=1,
                      relative_tolerance=1e-12, series=True)
     assert not short.converged and len(short.times) == len(short.series) == 1
-    refused("above 0", tl.solve, mesh, time_scheme="bdf2", time_step=0)
-    refused("density", tl.solve, mesh, time_scheme="bdf2", density=-1)
-    refused("time_scheme", tl.solve, mesh, time_scheme="rk4")
-    refused("time_steps", tl.solve, mesh, time_scheme="bdf2", time_steps=0)
+    rejected("above 0", tl.solve, mesh, time_scheme="bdf2", time_step=0)
+    rejected("density", tl.solve, mesh, time_scheme="bdf2", density=-1)
+    rejected("time_scheme", tl.solve, mesh, time_scheme="rk4")
+    rejected("time_steps", tl.solve, mesh, time_scheme="bdf2", time_steps=0)
 
 
 def test_condition():
@@ -235,23 +235,23 @@ def test_false_convergence():
     assert len(failed) > 3 and all(row["result"] == "*" and len(row["reason"]) > 10 for row in failed)
 
 
-def test_refusals():
+def test_rejections():
     mesh = square(12)
-    refused(wording("there-are-poisson-elliptic-elasticity"), tl.solve, mesh, "heat")
-    refused(wording("there-are-cg"), tl.solve, mesh, solver="lu")
-    refused(wording("undefined-symbol-q"), tl.solve, mesh, source="q")
-    refused(wording("of-elasticity-it-is-a-vector"), tl.solve, mesh, "elasticity", source=2.0)
-    refused(wording("source-has-the-shape-12-one-row"), tl.solve, mesh, source=np.ones(12))
-    refused(wording("without-a-fixed-point"), tl.solve, mesh, fixed="x > 5")
-    refused("-nonsense", tl.solve, mesh, petsc_options="-nonsense 1")
-    refused(wording("ksp-view-is-not-permitted"), tl.solve, mesh, petsc_options="-ksp_view ascii:written.txt")
-    refused(wording("options-file-is-not-permitted"), tl.solver_study, mesh, petsc_options="-options_file written.txt")
-    refused("-nonsense", tl.condition, mesh, petsc_options="-nonsense 1")
-    refused(wording("must-be-a-number-from"), tl.solve, mesh, time_limit=-1)
-    refused(wording("there-is-no-combination-99"), tl.solver_study, mesh, combinations=[99])
+    rejected(wording("there-are-poisson-elliptic-elasticity"), tl.solve, mesh, "heat")
+    rejected(wording("there-are-cg"), tl.solve, mesh, solver="lu")
+    rejected(wording("undefined-symbol-q"), tl.solve, mesh, source="q")
+    rejected(wording("of-elasticity-it-is-a-vector"), tl.solve, mesh, "elasticity", source=2.0)
+    rejected(wording("source-has-the-shape-12-one-row"), tl.solve, mesh, source=np.ones(12))
+    rejected(wording("without-a-fixed-point"), tl.solve, mesh, fixed="x > 5")
+    rejected("-nonsense", tl.solve, mesh, petsc_options="-nonsense 1")
+    rejected(wording("ksp-view-is-not-permitted"), tl.solve, mesh, petsc_options="-ksp_view ascii:written.txt")
+    rejected(wording("options-file-is-not-permitted"), tl.solver_study, mesh, petsc_options="-options_file written.txt")
+    rejected("-nonsense", tl.condition, mesh, petsc_options="-nonsense 1")
+    rejected(wording("must-be-a-number-from"), tl.solve, mesh, time_limit=-1)
+    rejected(wording("there-is-no-combination-99"), tl.solver_study, mesh, combinations=[99])
     tangled = DATA / "bracket-tangled.vtu"
     for function in (tl.solve, tl.condition, tl.solver_study):
-        refused("inverted", function, tangled)
+        rejected("inverted", function, tangled)
     stopped = tl.solve(mesh, preconditioner="none", maximum_iterations=3)
     assert not stopped.converged and stopped.iterations == 3 and wording("limit-of-iterations") in stopped.reason
 
@@ -263,8 +263,8 @@ def test_keywords():
            tl.solver_study: ("combinations", "relative_tolerance", "combination_time_limit")}  # fmt: skip
     for function, names in own.items():
         for name in (*problem, *names):
-            refused(f", {name}", function, square(3), nonsense=1)
-    refused(wording("did-you-mean-relative-tolerance"), tl.solve, square(3), relative_tolerence=1)
+            rejected(f", {name}", function, square(3), nonsense=1)
+    rejected(wording("did-you-mean-relative-tolerance"), tl.solve, square(3), relative_tolerence=1)
 
 
 def test_time_limit():

@@ -35,7 +35,7 @@ STUDIES = {
 
 
 LEAST = 1e-3  # seconds
-#: What the dissertation states and its printed numbers show.
+#: Statements of the dissertation that its printed numbers show.
 CLAIMED = (
     "AMG with any solver is faster than everything else", "Jacobi with GMRES is the slowest",
     "s is below 0.1 with AMG", "s is around 0.5 with the other combinations",
@@ -51,15 +51,15 @@ CLAIMED = (
     "CG and MINRES fail in many cases, GMRES and Bi-CGSTAB do not",
     "More combinations solve the problem on the wrench than on the hinge",
     "The preconditioner matters the most for the solver time", "The metric matters the most for the total time",
-    "The solver time of the best combination is 97% less than that of the worst one",
-    "The solver time of the best combination is 95% less than that of the worst one",
-    "The solver time of the best combination is 92% less than that of the worst one",
+    "The solver time with the best combination is 97% less than with the worst one",
+    "The solver time with the best combination is 95% less than with the worst one",
+    "The solver time with the best combination is 92% less than with the worst one",
     "The total time of AMG + CG with IMR is 90% less than with SS",
     "The total time of Jacobi + GMRES with IMR is 45% less than with SS",
     "The total time of ILU(0) + MINRES with IMR is 71% less than with SS",
     "The total time of Jacobi + GMRES with IMR is 16% less than with SS",
 )
-#: What failures decide.
+#: Findings that failures decide.
 COUNTED = ("fail", "robust", "More combinations", "converge with all")
 
 
@@ -122,7 +122,7 @@ def changed(value, change):
 
 
 def others(calls, change):
-    """The verdicts by claim, of solves that are changed; those of findings without solves do not count."""
+    """The verdicts by claim, of solves that are changed; findings without solves do not count."""
     made = [(function, changed(arguments, change), named) for function, arguments, named in calls
             if function.__name__ not in ("eigenvalue_findings", "ranking_findings")]
     return {claim: verdict for (_, claim), verdict in verdicts(made, studies.directory / "others").items()}
@@ -214,7 +214,7 @@ def test_tables():
 
 
 def test_metrics():
-    """Iterations are those of solve() on the same mesh; those of multigrid are few."""
+    """Iterations equal the iterations of solve() on the same mesh; multigrid takes few."""
     row = {r["metric"]: r for r in studies.rows("solver_metrics", "poisson_wrench_iterations")}["imr"]
     assert all(row[f"{n} converged"] == "yes" for n in _solver_tables.COMBINATIONS)
     assert all(int(row[f"{n} iterations"]) <= 6 for n in _solvers.AMG)
@@ -270,7 +270,7 @@ def check_conditioning():
 
 
 def test_time_stepping():
-    """Orders in time are those of the schemes; each combination solves all equations."""
+    """Orders in time match the schemes; each combination solves all equations."""
     for row in studies.rows("time_stepping", "orders"):
         expected = 1 if row["scheme"] == "backward euler" else 2
         assert abs(float(row["order"]) - expected) < 0.1, row

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What every proxy of the plugin guarantees: the time limit, the meaning of 0, empty inputs, summaries of blocks."""
+"""Guarantees of every proxy of the plugin: the time limit, the meaning of 0, empty inputs, summaries of blocks."""
 
 import os
 import re
@@ -16,7 +16,7 @@ from wording import wording
 LIMIT = 600
 #: Finds the elements around one point; ends at once.
 UNLIMITED = {"HorizonNeighbors"}
-#: Of these 0 is a value like any other, or one of an array.
+#: Properties whose 0 is a value like any other, or one of an array.
 PLAIN_ZERO = {"FixedPoints", "MovedArray", "Amount", "Animation", "ShowFeatures", "KernelValues", "Cell"}
 MEANING = re.compile(r"(?:^|[\s(;:])0(?: is|:| means|,| =)|if 0\b")
 DATA = Path(os.environ["TAUTLINE_DATA_DIR"])
@@ -56,7 +56,7 @@ def properties(proxy):
 
 
 def meaning_of_zero(prop):
-    """What the field shows for 0, or None."""
+    """The text of the field for 0, or None."""
     hints = prop.GetHints()
     for i in range(hints.GetNumberOfNestedElements() if hints else 0):
         element = hints.GetNestedElement(i)
@@ -86,7 +86,7 @@ def test_limits():
 
 
 def test_zero():
-    """A field whose 0 stands for something else shows it."""
+    """A field whose 0 has another meaning shows it."""
     shown = 0
     for group, name in PROXIES:
         for key, prop in properties(servermanager.ProxyManager().NewProxy(group, name)):
@@ -112,7 +112,7 @@ def test_no_array():
 
 
 def test_empty():
-    """An empty input is reported once, with a remedy, and nothing else is."""
+    """An empty input is reported once, with a remedy, and no other error is."""
     for group, name in PROXIES:
         if group != "filters":
             continue
@@ -136,10 +136,10 @@ def test_empty():
 
 
 def test_error_once():
-    """An input that is refused is one message, whatever outputs are asked for how often; the outputs are empty."""
+    """An input that is rejected is one message, whatever outputs are asked for how often; the outputs are empty."""
     table = simple.ProgrammableSource(OutputDataSetType="vtkTable", Script="pass")
     table.UpdatePipeline()
-    refused = 0
+    rejected = 0
     for group, name in PROXIES:
         if group != "filters":
             continue
@@ -147,7 +147,7 @@ def test_error_once():
         filter_ = make(name, **inputs)
         MESSAGES.clear()
         filter_.UpdatePipeline()
-        if "vtkDemandDrivenPipeline" in MESSAGES[0]:  # VTK itself refuses a table in the place of an image or surface
+        if "vtkDemandDrivenPipeline" in MESSAGES[0]:  # VTK itself rejects a table in the place of an image or surface
             continue
         for port in 2 * list(range(filter_.SMProxy.GetNumberOfOutputPorts())):
             simple.OutputPort(filter_, port).UpdatePipeline()
@@ -160,8 +160,8 @@ def test_error_once():
         executed.Update()
         assert len(MESSAGES) == 2, (name, MESSAGES)
         assert executed.GetErrorCode() != 0, name
-        refused += 1
-    assert refused > 10, refused
+        rejected += 1
+    assert rejected > 10, rejected
 
 
 def test_blocks():

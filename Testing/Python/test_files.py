@@ -20,7 +20,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import tautline as tl
-from checks import DATA, OUT, refused, shell, square, wording
+from checks import DATA, OUT, rejected, shell, square, wording
 from tautline import _files, studies
 from tautline.__main__ import _parser as shell_parser
 from tautline.__main__ import main as shell_main
@@ -114,7 +114,7 @@ def one_of(whole: list, found, writer: str) -> bool:
 
 
 def content(folder: Path, writer: str):
-    """What is in the file, read with the package: the numbers of points and cells."""
+    """The contents of the file, read with the package: the numbers of points and cells."""
     file = folder / file_of(writer)
     if writer in TEXTS:
         text = file.read_bytes()
@@ -161,7 +161,7 @@ def test_kill() -> None:
 
 
 def test_full_disk() -> None:
-    """On a disk of 512 kB a mesh that is too large is refused, and the older file stays."""
+    """On a disk of 512 kB a mesh that is too large is rejected, and the older file stays."""
     disk = new_folder("disk")
     command = ["mount", "-t", "tmpfs", "-o", f"size={DISK}", "tmpfs", disk]
     mounted = subprocess.run(command, capture_output=True, text=True)
@@ -175,7 +175,7 @@ def test_full_disk() -> None:
                 large = tl.metric_field(dimensions=(600, 600, 1), metrics=["imr", "si"]).mesh
             write(writer, small, disk / file_of(writer))
             before, files = content(disk, writer), names(disk)
-            refused(wording("no-space-left-on-device"), write, writer, large, disk / file_of(writer))
+            rejected(wording("no-space-left-on-device"), write, writer, large, disk / file_of(writer))
             assert content(disk, writer) == before, f"{writer}: the older file is not as it was"
             assert names(disk) == files, f"{writer}: {names(disk) ^ files} are left"
             write(writer, small, disk / file_of(writer))  # and there is room again
@@ -214,11 +214,11 @@ def test_directory_without_permission() -> None:
 
     def check() -> None:
         for writer in WRITERS:
-            refused(wording("cannot-be-written"), write, writer, meshes[writer], folder / file_of(writer))
+            rejected(wording("cannot-be-written"), write, writer, meshes[writer], folder / file_of(writer))
 
     as_nobody(check)
     folder.chmod(0o777)
-    as_nobody(lambda: refused("write-protected", tl.write, meshes[".vtu"], folder / "out.vtu"))
+    as_nobody(lambda: rejected("write-protected", tl.write, meshes[".vtu"], folder / "out.vtu"))
     assert before == {name: (folder / name).read_bytes() for name in names(folder)}
 
 
@@ -240,7 +240,7 @@ def test_links() -> None:
         assert not any(name.endswith(".part") for name in names(folder)), names(folder)
         link.unlink()
         link.symlink_to(link.name)
-        refused(wording("cannot-be-written"), write, writer, large, link)
+        rejected(wording("cannot-be-written"), write, writer, large, link)
     if os.geteuid() == 0:  # a link that another user put into a directory for everybody
         folder = new_folder("everybody")
         folder.chmod(0o1777)
@@ -250,7 +250,7 @@ def test_links() -> None:
             link = folder / file_of(writer)
             link.symlink_to(victim)
             os.lchown(link, NOBODY, NOBODY)
-            refused(wording("link-of-another-user"), write, writer, mesh_for(writer, 3), link)
+            rejected(wording("link-of-another-user"), write, writer, mesh_for(writer, 3), link)
         assert victim.read_text() == "precious"
 
 
@@ -293,12 +293,12 @@ def test_name_first() -> None:
     shutil.rmtree(absent, ignore_errors=True)
     no_mesh = FOLDER / "no-mesh.vtu"
     for name, text in (("x.docx", "no writer for '.docx'"), ("absent/x.vtu", "there is no directory")):
-        refused(text, tl.write, no_mesh, FOLDER / name)
+        rejected(text, tl.write, no_mesh, FOLDER / name)
         assert text in shell("quality", no_mesh, "-o", FOLDER / name, code=1)
         assert text in shell("convert", no_mesh, FOLDER / name, code=1)
     assert wording("there-is-no-directory") in shell("quality", no_mesh, "--csv", absent / "x.csv", code=1)
     (FOLDER / "folder.vtu").mkdir(exist_ok=True)
-    refused(wording("it-is-a-directory"), tl.write, no_mesh, FOLDER / "folder.vtu")
+    rejected(wording("it-is-a-directory"), tl.write, no_mesh, FOLDER / "folder.vtu")
 
 
 def commands() -> dict[str, argparse.ArgumentParser]:
@@ -308,14 +308,14 @@ def commands() -> dict[str, argparse.ArgumentParser]:
 
 
 def call(arguments: list[str]) -> str:
-    """What a command prints to stderr before it exits with 1."""
+    """The output of a command on stderr before it exits with 1."""
     with contextlib.redirect_stderr(io.StringIO()) as said:
         assert shell_main(arguments) == 1, arguments
     return said.getvalue()
 
 
 def test_every_output_first() -> None:
-    """Every command with an output refuses a name that cannot be written before it reads its input."""
+    """Every command with an output rejects a name that cannot be written before it reads its input."""
     absent, no_mesh = FOLDER / "absent", str(FOLDER / "no-mesh.vtu")
     shutil.rmtree(absent, ignore_errors=True)
     needed = {"warp": ["--target", no_mesh]}  # options of which one must be given
@@ -344,12 +344,12 @@ def test_every_output_first() -> None:
 
 
 def test_every_study_first() -> None:
-    """Every study refuses a directory that cannot be made before it works."""
+    """Every study rejects a directory that cannot be made before it works."""
     blocked = FOLDER / "a-file"
     blocked.write_text("")
     for name in studies.names():
         signal.alarm(20)  # ends the test with an error
-        refused(wording("cannot-be-made"), studies.main, [name, "--out", str(blocked / "out")])
+        rejected(wording("cannot-be-made"), studies.main, [name, "--out", str(blocked / "out")])
     signal.alarm(0)
     assert len(studies.names()) > 20
 
@@ -364,7 +364,7 @@ def test_streams() -> None:
     pipe = new_folder("pipes") / "pipe.vtu"
     os.mkfifo(pipe)
     os.mkfifo(pipe.with_suffix(".mesh"))
-    refused(wording("not-a-regular-file"), tl.write, DATA / "plate.vtu", pipe)
+    rejected(wording("not-a-regular-file"), tl.write, DATA / "plate.vtu", pipe)
     own = tl.vtkMeditWriter()
     own.SetInputData(square(2))
     own.SetFileName(str(pipe.with_suffix(".mesh")))

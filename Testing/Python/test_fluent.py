@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Meshes of Fluent: text and binary, polyhedra, zones, periodic zones, the plane; what is refused, by name."""
+"""Meshes of Fluent: text and binary, polyhedra, zones, periodic zones, the plane; what is rejected, by name."""
 
 import gzip
 import struct
@@ -7,7 +7,7 @@ import warnings
 
 import numpy as np
 import tautline as tl
-from checks import OUT, points, refused, run_tests, shell, wording
+from checks import OUT, points, rejected, run_tests, shell, wording
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 FOLDER = OUT / "fluent"
@@ -148,7 +148,7 @@ def test_text():
     assert types(tl.read(FOLDER / "cubes.cas", lower_cells=False)) == [POLYHEDRON, HEXAHEDRON]
     assert "11 valid, 0 inverted" in shell("quality", FOLDER / "cubes.cas")
     assert tl.times(FOLDER / "cubes.cas") == []
-    refused(wording("has-no-time-steps"), tl.read, FOLDER / "cubes.cas", time=1)
+    rejected(wording("has-no-time-steps"), tl.read, FOLDER / "cubes.cas", time=1)
 
 
 def test_binary():
@@ -174,7 +174,7 @@ def test_sides():
 
 
 def test_periodic():
-    """The faces of two periodic zones correspond by their order, whatever that of the file is."""
+    """The faces of two periodic zones correspond by their order, whatever the order in the file is."""
     corners, zones = outward(*two_cubes())
     walls = zones.pop(11)
     y = [np.mean([corners[node - 1][1] for node in nodes]) for nodes, *_ in walls]
@@ -213,7 +213,7 @@ def test_plane():
         assert mesh.cell_data["Patch"].tolist() == [-1] * 4 + [0] * 2 + [1] * 6
         assert tl.quality(tl.read(FOLDER / "plane.msh", lower_cells=False)).inverted == 0
     rows[11][0] = ([2, 5, 6], 2, 0)
-    refused("is 3,", tl.read, write("solid.msh", text(corners, rows, cells=4, dimension=2)))
+    rejected("is 3,", tl.read, write("solid.msh", text(corners, rows, cells=4, dimension=2)))
 
 
 def test_pieces():
@@ -231,31 +231,31 @@ def test_pieces():
         assert sorted(found) == list(range(count)), found
 
 
-def test_refused():
-    """What is not read is an error that names it; nothing is read by halves."""
+def test_rejected():
+    """Unsupported contents are an error that names them; nothing is read in part."""
     corners, zones = outward(*two_cubes())
     good = text(corners, zones)
     for extra in ("(59 (1 1 3 3)(2 4 5))", "(58 (1 1 2 2)(1 2))", "(3058 (1 1 2 2)(xx)\nEnd of Binary Section   3058)"):
-        refused("convert-hanging-nodes", tl.read, write("tree.cas", good + extra))
-    refused("convert-hanging-nodes", tl.read, write("tree.cas", good.replace("(12 (2 1 2 1 7)", "(12 (2 1 2 20 7)")))
-    refused(wording("fluent-mesh-interfaces"), tl.read, write("interface.cas", good + "(61 (1 1)(2 3))"))
+        rejected("convert-hanging-nodes", tl.read, write("tree.cas", good + extra))
+    rejected("convert-hanging-nodes", tl.read, write("tree.cas", good.replace("(12 (2 1 2 1 7)", "(12 (2 1 2 20 7)")))
+    rejected(wording("fluent-mesh-interfaces"), tl.read, write("interface.cas", good + "(61 (1 1)(2 3))"))
     surface = {zone: [(nodes, 0, 0) for nodes, *_ in rows] for zone, rows in zones.items()}
-    refused("surface", tl.read, write("surface.msh", text(corners, surface, cells=0)))
-    refused("cff-files", tl.read, write("new.cas.h5", b"\x89HDF"))
+    rejected("surface", tl.read, write("surface.msh", text(corners, surface, cells=0)))
+    rejected("cff-files", tl.read, write("new.cas.h5", b"\x89HDF"))
     open_ = {**zones, 11: zones[11][1:]}
-    refused(wording("fluent-cell-0-is-open"), tl.read, write("open.cas", text(corners, open_)))
-    refused("declares", tl.read, write("more.cas", good.replace("(13 (0 1 c 0))", "(13 (0 1 d 0))")))
-    refused("more.cas:", tl.read, write("more.cas", good.replace("(2 3)\n", "", 1)))
-    refused("twice", tl.read, write("twice.cas", good.replace("\n4 ", "\n4 1 1 1 1 1 0\n4 ", 1)))
+    rejected(wording("fluent-cell-0-is-open"), tl.read, write("open.cas", text(corners, open_)))
+    rejected("declares", tl.read, write("more.cas", good.replace("(13 (0 1 c 0))", "(13 (0 1 d 0))")))
+    rejected("more.cas:", tl.read, write("more.cas", good.replace("(2 3)\n", "", 1)))
+    rejected("twice", tl.read, write("twice.cas", good.replace("\n4 ", "\n4 1 1 1 1 1 0\n4 ", 1)))
     # a file that ends too early
     for content in (good.encode(), binary(corners, zones)):
         end = content.rindex(b"(39 (11") if b"(3013" in content else content.rindex(b"(13 (b") + 40
         for size in range(8, end, 7):
-            refused("cut.cas", tl.read, write("cut.cas", content[:size]))
+            rejected("cut.cas", tl.read, write("cut.cas", content[:size]))
 
 
 def test_templates():
-    """The points of a file do not come back: a .msh becomes one of Gmsh, a template is refused."""
+    """The points of a file do not come back: a .msh becomes one of Gmsh, a template is rejected."""
     corners = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
     faces = [([1, 2, 3], 1, 0), ([1, 4, 2], 1, 0), ([2, 4, 3], 1, 0), ([1, 3, 4], 1, 0)]
     file = write("one.msh", text(corners, {11: faces}, cells=1))
@@ -264,12 +264,12 @@ def test_templates():
     target = FOLDER / "of-gmsh.msh"
     tl.write(tl.perturb(file), target)
     assert target.read_text().startswith("$MeshFormat")
-    refused("one.msh", tl.write, tl.read(file), target, template=file)
-    refused(".cas", tl.write, tl.read(file), FOLDER / "out.cas")
+    rejected("one.msh", tl.write, tl.read(file), target, template=file)
+    rejected(".cas", tl.write, tl.read(file), FOLDER / "out.cas")
 
 
 def test_results_beside():
-    """A .dat beside a case is not read: a warning says so."""
+    """A .dat beside a case is not read: a warning reports it."""
     file = write("with.cas", text(*outward(*two_cubes())))
     write("with.dat", "(0 \"results\")")
     with warnings.catch_warnings(record=True) as told:

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Every grid that leaves read() is valid, whoever read it; every writer takes, or refuses, every kind of empty mesh."""
+"""Every grid that leaves read() is valid, whoever read it; every writer takes, or rejects, every kind of empty mesh."""
 
 from pathlib import Path
 
 import numpy as np
 import tautline as tl
-from checks import OUT, refused, run_tests, shell, square
+from checks import OUT, rejected, run_tests, shell, square
 from tautline._grid_checks import POINTS_OF_TYPE, check_grid
 from tautline._meshio import installed
 from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
@@ -32,7 +32,7 @@ except ImportError:  # before VTK 9.2
 
 FOLDER = OUT / "grids"
 FOLDER.mkdir(parents=True, exist_ok=True)
-#: Formats of VTK hold a mesh without cells; others may refuse it.
+#: Formats of VTK hold a mesh without cells; others may reject it.
 HOLD_NOTHING = {".vtk", ".vtu", ".vtp", ".vti", ".vtr", ".vts", ".vtm"}
 FAR = 100.0  # outside of the unit square
 
@@ -72,7 +72,7 @@ INVALID = {
 
 
 def test_types():
-    """The table of points by type is that of VTK."""
+    """The table of points by type equals VTK's."""
     cell = vtkGenericCell()
     for kind, count in POINTS_OF_TYPE.items():
         cell.SetCellType(kind)
@@ -82,10 +82,10 @@ def test_types():
 
 def test_invalid_grids():
     for name, make in INVALID.items():
-        refused("", check_grid, make())
+        rejected("", check_grid, make())
         for ending in (".vtu", ".vtk", ".msh", ".stl", ".mesh", ".off"):
             target = FOLDER / f"invalid{ending}"
-            refused("", tl.write, make(), target)
+            rejected("", tl.write, make(), target)
             assert not target.exists(), (name, ending)
 
 
@@ -99,12 +99,12 @@ def test_meshio():
     for kind, cells in (("hexahedron", [[0, 1, 2, 3]]), ("triangle", [[0, 1, 9]]), ("tetra", [[0.5, 1, 2, 3]])):
         mesh = meshio.Mesh(np.zeros((4, 3)), [])
         mesh.cells = [type("Block", (), {"type": kind, "data": np.array(cells)})()]
-        refused(kind, tl.quality, mesh)
+        rejected(kind, tl.quality, mesh)
     ragged = type("Block", (), {"type": "triangle", "data": [[0, 1, 2], [0, 1]]})()
     mesh = meshio.Mesh(np.zeros((4, 3)), [])
     mesh.cells = [ragged]
-    refused("triangle", tl.quality, mesh)
-    # The first triangle of meshio's wedge faces inwards, that of VTK outwards.
+    rejected("triangle", tl.quality, mesh)
+    # The first triangle of meshio's wedge faces inward, of VTK's outward.
     prism = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (0, 1, 1)]
     ids = tl.quality(meshio.Mesh(np.array(prism, float), [("wedge", np.arange(6)[None])])).mesh.GetCell(0).GetPointIds()
     assert [ids.GetId(i) for i in range(6)] == [0, 2, 1, 3, 5, 4]
@@ -215,7 +215,7 @@ def test_empty():
                 files = tl.write(mesh, target)
             except tl.Error:
                 assert not target.exists(), (name, ending)
-                # What the format is made for is not refused.
+                # Meshes that the format is made for are not rejected.
                 same = mesh.IsA("vtkMultiBlockDataSet") if ending == ".vtm" else is_for(ending, mesh)
                 assert not (ending in HOLD_NOTHING and same), (name, ending)
                 continue

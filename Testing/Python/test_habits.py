@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What users of a shell expect: help, version, info, several files, the output as the last argument, exit codes."""
+"""Conventions of the shell: help, version, info, several files, the output as the last argument, exit codes."""
 
 import contextlib
 import io
@@ -51,7 +51,7 @@ def test_help() -> None:
 
 
 def test_help_all() -> None:
-    """--help has the options that most need, and says how many more there are; --help-all has all."""
+    """--help has the most used options, and the number of further ones; --help-all has all."""
     for name, parser in commands().items():
         if name in ("help", "study"):
             continue

@@ -2,7 +2,7 @@
 """test_improve_on_ranks.py PVBATCH: Improve Mesh in parts on 2, 3 and 4 MPI ranks; skipped without mpirun.
 
 The mesh is valid and conforming, its boundary, regions and volume stay, nothing becomes worse, the result is near to
-that of one process and does not depend on how the mesh was cut. What needs the whole mesh gets it.
+the result of one process and does not depend on how the mesh was cut. Operations that need the whole mesh get it.
 """
 
 import numpy as np
@@ -12,8 +12,8 @@ from wording import wording
 CUTS = ("slabs", "tree", "random")
 ROUNDING = 1e-13
 CLOSE, DIGITS = 1e-9, 1e-3
-# Of a result in parts against that of one process; parts of 250 cells with fixed points have few ways. On Debian 12 the
-# loss is below 0.1 degrees; with other compilers rounding takes other ways (GCC 16: 1.2 degrees).
+# For a result in parts against the result of one process; parts of 250 cells with fixed points have few ways. On Debian
+# 12 the loss is below 0.1 degrees; with other compilers rounding takes other ways (GCC 16: 1.2 degrees).
 ANGLE_LOSS, RATIO_LOSS = 2.0, 1.1
 FACES = [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]]
 GATHERED = {
@@ -31,7 +31,7 @@ def smallest_angles(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
     """The smallest dihedral angle of each tetrahedron in degrees."""
     x = points[cells]
     normals = [np.cross(x[:, b] - x[:, a], x[:, c] - x[:, a]) for a, b, c in FACES]
-    # Of positive tetrahedra, these point outwards and inwards in turn.
+    # For positive tetrahedra, these point outward and inward in turn.
     units = [sign * n / np.linalg.norm(n, axis=1)[:, None] for sign, n in zip((1, -1, 1, -1), normals)]
     cosines = [-(units[i] * units[j]).sum(axis=1) for i in range(4) for j in range(i)]
     return np.degrees(np.arccos(np.clip(np.max(cosines, axis=0), -1, 1)))
@@ -96,7 +96,7 @@ def check_data(whole: Whole, given: dict, case: str) -> None:
         ids = part.get("cell OriginalCellId", np.zeros(0, int))
         assert ((ids >= first) & (ids < first + part["given"])).all(), case
         first += part["given"]
-    # New points are where their data say, unless a later round has moved them: these stay in the block.
+    # New points are at the positions in their data, unless a later round has moved them: these stay in the block.
     is_given = (given["points"][whole.of_points["place"]] == whole.of_points["given"]).all(axis=1)
     far = np.abs(whole.of_points["given"] - whole.positions)[~is_given]
     assert far.size or case == "late", case  # without an inserted point

@@ -3,7 +3,7 @@
 
 test_interrupts.py PART [NAME], where PART is signal, cancel, limit, shell or some, and NAME an operation. Every
 operation would take much longer than the test waits. SIGINT is sent after the operation has reported its first
-progress, by another process, because Python executes nothing else meanwhile. The times to the end are printed; the
+progress, by another process, because Python executes no other code meanwhile. The times to the end are printed; the
 bound that is checked is generous, because the machine may be busy. The time that an operation computes between two
 polls does not depend on that: it is CPU time of the calling thread, and has a bound of its own. So is what it computes
 after its time limit: CPU time of the process.
@@ -35,13 +35,13 @@ TIME_LIMIT = 1.0
 OVERRUN = 1.5
 #: Where a result of 750,000 tetrahedra is made after the limit; up to 2.1 were measured where others shared the cores.
 OVERRUN_OF = {"improve": 3.0}
-#: What goes on in the background after its end, and is in the way of what follows. Its CPU time counts, too.
+#: Work that continues in the background after its end, and delays the next operation. Its CPU time also counts.
 IN_BACKGROUND = ("warp factorization", "solve factorization", "condition accurate", "solver study")
 OVERRUN_IN_BACKGROUND = 4.0
-#: What the part `some` interrupts, in pvpython: one of each kind.
+#: Operations that the part `some` interrupts, in pvpython: one of each kind.
 SOME = ("quality", "optimize local newton", "solve factorization")
 
-#: What a child does: the command of the shell in argv[1:], with a report of the first progress.
+#: The work of a child: the command of the shell in argv[1:], with a report of the first progress.
 CHILD = """
 import sys
 from tautline import _interrupts
@@ -100,7 +100,7 @@ def check_signal(name: str) -> None:
         raise AssertionError(f"{name} was not interrupted")
     assert progress.sender.wait() == 0
     assert signal.getsignal(signal.SIGINT) is before
-    # What follows is not interrupted.
+    # The next operation is not interrupted.
     assert tl.domain("wrench").GetNumberOfCells() > 0
 
 
@@ -212,7 +212,7 @@ def check_shell() -> None:
             [sys.executable, "-c", CHILD, *arguments], cwd=folder, text=True, stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
         )  # fmt: skip
-        # The first progress of these commands is that of the reader or of the domain; later ones are as good.
+        # The first progress of these commands comes from the reader or the domain; later ones are as good.
         assert child.stdout.readline() == "progress\n", (name, child.communicate())
         time.sleep(DELAY)
         child.send_signal(signal.SIGINT)

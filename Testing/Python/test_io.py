@@ -5,7 +5,7 @@ import sys
 from pathlib import Path
 
 import tautline as tl
-from checks import DATA, OUT, refused, run_tests, wording
+from checks import DATA, OUT, rejected, run_tests, wording
 
 OUTPUT = OUT / f"io-{Path(sys.executable).name}"  # python3 and pvpython may run at the same time
 PLATE = DATA / "plate.vtu"
@@ -21,15 +21,15 @@ def test_vtk():
     image = tl.metric_field(dimensions=(4, 5, 1)).mesh
     tl.write(image, OUTPUT / "field.vti")
     assert tl.read(OUTPUT / "field.vti").GetDimensions() == (4, 5, 1)
-    refused(wording("vtp-cannot-hold-a-vtkunstructuredgrid-vtk-vtu"), tl.write, mesh, OUTPUT / "plate.vtp")
-    refused(wording("no-writer-for-obj"), tl.write, mesh, OUTPUT / "plate.obj")
-    refused(wording("cannot-be-written"), tl.write, mesh, OUTPUT / "no-such-directory" / "plate.vtu")
-    refused(wording("there-is-no-such-file"), tl.read, OUTPUT / "absent.vtu")
-    refused(".xyz", tl.read, "mesh.xyz")
+    rejected(wording("vtp-cannot-hold-a-vtkunstructuredgrid-vtk-vtu"), tl.write, mesh, OUTPUT / "plate.vtp")
+    rejected(wording("no-writer-for-obj"), tl.write, mesh, OUTPUT / "plate.obj")
+    rejected(wording("cannot-be-written"), tl.write, mesh, OUTPUT / "no-such-directory" / "plate.vtu")
+    rejected(wording("there-is-no-such-file"), tl.read, OUTPUT / "absent.vtu")
+    rejected(".xyz", tl.read, "mesh.xyz")
     broken = OUTPUT / "broken.vtu"
     broken.write_text("<VTKFile type='UnstructuredGrid'><oops>")
-    refused(wording("error-parsing"), tl.read, broken)
-    refused(wording("has-no-options-not-binary"), tl.write, mesh, OUTPUT / "plate.vtu", binary=True)
+    rejected(wording("error-parsing"), tl.read, broken)
+    rejected(wording("has-no-options-not-binary"), tl.write, mesh, OUTPUT / "plate.vtu", binary=True)
 
 
 def test_mesh_generators():
@@ -57,15 +57,15 @@ def test_mesh_generators():
     assert tl.read(DATA / "cube.1.ele", lower_cells=True).GetNumberOfCells() > 171
 
     (OUTPUT / "broken.off").write_text("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n")
-    refused(wording("broken-off-6-vertex-is-7-from"), tl.read, OUTPUT / "broken.off")
-    refused(wording("there-is-no-such-file"), tl.read, OUTPUT / "none.msh")
-    refused(wording("no-reader-for-docx"), tl.read, "thesis.docx")
-    refused(wording("no-writer-for-docx"), tl.write, cube, "thesis.docx")
-    refused("171 tetrahedra", tl.write, cube, OUTPUT / "cube.poly")
-    refused("tetrahedra", tl.write, cube, OUTPUT / "cube.off")
-    refused(wording("cannot-be-written"), tl.write, cube, OUTPUT / "no" / "such" / "folder.mesh")
-    refused(wording("not-int"), tl.write, 7, OUTPUT / "seven.mesh")
-    refused(wording("always-text"), tl.write, cube, OUTPUT / "cube.mesh", binary=True)
+    rejected(wording("broken-off-6-vertex-is-7-from"), tl.read, OUTPUT / "broken.off")
+    rejected(wording("there-is-no-such-file"), tl.read, OUTPUT / "none.msh")
+    rejected(wording("no-reader-for-docx"), tl.read, "thesis.docx")
+    rejected(wording("no-writer-for-docx"), tl.write, cube, "thesis.docx")
+    rejected("171 tetrahedra", tl.write, cube, OUTPUT / "cube.poly")
+    rejected("tetrahedra", tl.write, cube, OUTPUT / "cube.off")
+    rejected(wording("cannot-be-written"), tl.write, cube, OUTPUT / "no" / "such" / "folder.mesh")
+    rejected(wording("not-int"), tl.write, 7, OUTPUT / "seven.mesh")
+    rejected(wording("always-text"), tl.write, cube, OUTPUT / "cube.mesh", binary=True)
 
 
 run_tests(globals())

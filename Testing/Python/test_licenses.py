@@ -53,7 +53,7 @@ def test_solver():
 
 
 def test_later():
-    """The classes that are imported on use are those of their modules, and attributes of the package before."""
+    """The classes that are imported on use belong to their modules, and attributes of the package before."""
     for module in sorted(set(_vtk.LATER.values())):
         names = {name for name, of in _vtk.LATER.items() if of == module}
         assert names <= set(dir(tautline)) and names <= set(tautline.__all__), names - set(dir(tautline))
@@ -78,7 +78,7 @@ def needed(binary: Path) -> set[str]:
 
 
 def links(binary: Path) -> set[str]:
-    """What a binary links, as the table has it; the solvers also through a library of Tautline that it links."""
+    """The libraries that a binary links, as in the table; the solvers also through a linked library of Tautline."""
     found = set()
     for name in needed(binary):
         group = next((group for group, names in GROUPS.items() if names.match(name)), "")
@@ -93,7 +93,7 @@ def links(binary: Path) -> set[str]:
 
 
 def table() -> dict[str, set[str]]:
-    """What each binary links, by the name of its row."""
+    """The libraries that each binary links, by the name of its row."""
     rows = re.findall(r"^\| (.+?) \| [\w-]+ \| (.*?) ?\| .* \|$", PAGE.read_text(encoding="utf-8"), re.MULTILINE)
     return {name.strip("`"): {link for link in re.split("[,;] ", listed) if link} for name, listed in rows[1:]}
 
@@ -132,7 +132,7 @@ def test_closure():
 
 
 def closure(path: Path) -> set[str]:
-    """The libraries that a binary links, and what those of them link that are no groups and not PETSc."""
+    """The libraries that a binary links, and the libraries that these link, except groups and PETSc."""
     found, waiting = set(), [path]
     while waiting:
         for name in needed(waiting.pop()) - found:

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Where the memory of the process is limited (ulimit -v), a command succeeds or ends with one line that says why.
+"""Where the memory of the process is limited (ulimit -v), a command succeeds or ends with one line that states the
+reason.
 
 The smallest limits are those under which Python just imports the package: below, the interpreter itself fails. No
 command may end by a signal, with a traceback or with a half-written file, whichever of its allocations fails: its own,
-VTK's, those of PETSc and MPI, or those of a thread's stack.
+VTK's, by PETSc and MPI, or for a thread's stack.
 """
 
 import os
@@ -66,12 +67,12 @@ def commands(large: str, small: str, layer: str) -> dict[str, list[str]]:
     }
 
 
-# Of the C library, which ends the process where a thread that starts gets no memory for its variables.
+# A message of the C library, which ends the process if a thread that starts gets no memory for its variables.
 OF_THREADS = "cannot allocate memory for thread-local data: ABORT"
 
 
 def complaint(done: subprocess.CompletedProcess) -> str:
-    """What is wrong with the end of a command; "" if nothing is."""
+    """The error in the end of a command; "" if there is none."""
     errors = [line for line in done.stderr.strip().splitlines() if line != OF_THREADS]
     if done.returncode < 0:
         return f"ended by signal {-done.returncode}"

@@ -11,7 +11,7 @@ import time
 from pathlib import Path
 
 import tautline as tl
-from checks import DATA, OUT, refused, run_tests, wording
+from checks import DATA, OUT, rejected, run_tests, wording
 
 CUBE = DATA / "cube.smesh"
 OWN = Path(tl.__file__).parents[4]  # of lib/python3/dist-packages/tautline
@@ -81,7 +81,7 @@ def test_interrupted():
 
 def test_time_limit():
     """The limit of the filter ends the program as well."""
-    refused(wording("time-limit"), tl.tet_mesh, CUBE, volume=1e-8, time_limit=1)
+    rejected(wording("time-limit"), tl.tet_mesh, CUBE, volume=1e-8, time_limit=1)
     assert wait_until(lambda: not children(os.getpid()), END_SECONDS), children(os.getpid())
 
 
@@ -92,9 +92,9 @@ def test_missing():
     }.items():
         os.environ["TAUTLINE_MESHER"] = name
         try:
-            refused(text, tl.tet_mesh, CUBE)
-            refused(name, tl.triangle_mesh, DATA / "plate.poly")
-            refused(name, tl.domain, "disk2d")
+            rejected(text, tl.tet_mesh, CUBE)
+            rejected(name, tl.triangle_mesh, DATA / "plate.poly")
+            rejected(name, tl.domain, "disk2d")
         finally:
             del os.environ["TAUTLINE_MESHER"]
     assert tl.tet_mesh(CUBE).mesh.GetNumberOfCells() > 0
@@ -122,7 +122,7 @@ def test_version():
     program.chmod(0o755)
     os.environ["TAUTLINE_MESHER"] = str(program)
     try:
-        refused(wording("same-version-of-both"), tl.tet_mesh, CUBE)
+        rejected(wording("same-version-of-both"), tl.tet_mesh, CUBE)
     finally:
         del os.environ["TAUTLINE_MESHER"]
 

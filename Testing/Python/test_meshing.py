@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import tautline as tl
-from checks import DATA, OUT, points, refused, run_tests, shell, square, wording
+from checks import DATA, OUT, points, rejected, run_tests, shell, square, wording
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 from vtkmodules.vtkFiltersSources import vtkSphereSource
@@ -53,9 +53,9 @@ def test_triangles():
     small[0] = 0.01
     graded = tl.triangle_mesh(loop(n), sizes=small)
     assert graded.mesh.GetNumberOfCells() > tl.triangle_mesh(loop(n)).mesh.GetNumberOfCells() + 20
-    refused(wording("minimum-angle-is-36"), tl.triangle_mesh, loop(n), minimum_angle=36)
-    refused(wording("size-is-1"), tl.triangle_mesh, loop(n), -1)
-    refused(wording("sizes-has-the-shape"), tl.triangle_mesh, loop(n), sizes=[1.0, 2.0])
+    rejected(wording("minimum-angle-is-36"), tl.triangle_mesh, loop(n), minimum_angle=36)
+    rejected(wording("size-is-1"), tl.triangle_mesh, loop(n), -1)
+    rejected(wording("sizes-has-the-shape"), tl.triangle_mesh, loop(n), sizes=[1.0, 2.0])
     assert "10 triangles" not in shell("triangle-mesh", DATA / "plate.poly", "--size", 0.2, "-o", OUT / "tri.vtu")
     made = tl.triangle_mesh(DATA / "plate.poly", 0.2).mesh
     assert tl.read(OUT / "tri.vtu").GetNumberOfCells() == made.GetNumberOfCells()
@@ -73,8 +73,8 @@ def test_tetrahedra():
     kept = tl.tet_mesh(sphere.GetOutput(), preserve_surface=True)
     assert kept.boundary.GetNumberOfCells() == sphere.GetOutput().GetNumberOfCells()
     assert "tetrahedra" in kept.summary and tl.untangle(kept).inverted == 0
-    refused(wording("volume-is-x"), tl.tet_mesh, CUBE, "x")
-    refused("", tl.tet_mesh, square(3))  # open
+    rejected(wording("volume-is-x"), tl.tet_mesh, CUBE, "x")
+    rejected("", tl.tet_mesh, square(3))  # open
     shell("tet-mesh", CUBE, "--volume", 0.01, "-o", OUT / "tet.vtu")
     assert tl.read(OUT / "tet.vtu").GetNumberOfCells() == len(sizes)
 
@@ -90,8 +90,8 @@ def test_horizon():
     assert found.table()[0]["cell"] == found.cells[0] and found.horizon.GetNumberOfPoints() >= 256
     half = tl.horizon_neighbors(mesh, (0, 0.5), delta)
     assert math.isclose(half.area.sum(), math.pi * delta**2 / 2, rel_tol=1e-12)
-    refused(wording("center-is"), tl.horizon_neighbors, mesh, (1,))
-    refused(wording("delta-is-a"), tl.horizon_neighbors, mesh, (1, 1), "a")
+    rejected(wording("center-is"), tl.horizon_neighbors, mesh, (1,))
+    rejected(wording("delta-is-a"), tl.horizon_neighbors, mesh, (1, 1), "a")
     tl.write(mesh, OUT / "horizon.vtu")
     assert f"{len(found.case)} triangles" in shell("horizon-neighbors", OUT / "horizon.vtu")
 

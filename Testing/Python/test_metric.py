@@ -3,7 +3,7 @@
 
 import numpy as np
 import tautline as tl
-from checks import DATA, OUT, points, refused, run_tests, shell, square, wording
+from checks import DATA, OUT, points, rejected, run_tests, shell, square, wording
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet, vtkUnstructuredGrid
 
@@ -51,7 +51,7 @@ def test_hessian():
 
 
 def test_taken():
-    """What takes metric tensors takes the array: targets, and lengths of edges."""
+    """Functions that take metric tensors take the array: targets, and lengths of edges."""
     mesh = square(12)
     metric = tl.metric(mesh, field=front(mesh), target_value=600)
     before = tl.quality(metric, "mu_shape_size", target="tensor", tensor="Metric")
@@ -124,34 +124,34 @@ def test_kinds_of_data():
     assert (one.tensors == many.tensors).all() and one.summary == many.summary
 
 
-def test_refused():
+def test_rejected():
     mesh = square(4)
     x = np.ones(25)
-    refused("field", tl.metric, mesh, "hessian")
-    refused("sizes", tl.metric, mesh, "sizes")
-    refused(wording("an-array-for-the-source"), tl.metric, mesh, "curvature", field=x)
-    refused(wording("an-array-for-the-source"), tl.metric, mesh, field=x, sizes=x)
-    refused("nothing", tl.metric, mesh, field="nothing")
+    rejected("field", tl.metric, mesh, "hessian")
+    rejected("sizes", tl.metric, mesh, "sizes")
+    rejected(wording("an-array-for-the-source"), tl.metric, mesh, "curvature", field=x)
+    rejected(wording("an-array-for-the-source"), tl.metric, mesh, field=x, sizes=x)
+    rejected("nothing", tl.metric, mesh, field="nothing")
     odd = np.where(np.arange(25) == 3, np.nan, x)
-    refused(wording("values-of-the-field-are-not-finite"), tl.metric, mesh, field=odd)
-    refused(wording("sizes-are-not-positive-numbers"), tl.metric, mesh, sizes=odd)
-    refused(wording("sizes-are-not-positive-numbers"), tl.metric, mesh, sizes=-x)
-    refused(wording("sizes-are-not-positive-numbers"), tl.metric, mesh, sizes=0 * x)
-    refused(wording("metric-tensors-are-not-positive-definite"), tl.metric, mesh, sizes=np.ones((25, 6)))
-    refused(wording("the-array-of-sizes-has-3"), tl.metric, mesh, sizes=np.ones((25, 3)))
-    refused("target_value", tl.metric, mesh, field=x, target_value=0)
-    refused("target_value", tl.metric, mesh, field=x, target_value=-1)
-    refused("smallest_size", tl.metric, mesh, smallest_size=-0.1)
-    refused(wording("gradation-is-at-most-1"), tl.metric, mesh, gradation=1)
-    refused(wording("norm-is-below-1"), tl.metric, mesh, field=x, norm=0.5)
-    refused(wording("the-double-projection-takes"), tl.metric, DATA / "zoo.mesh",
+    rejected(wording("values-of-the-field-are-not-finite"), tl.metric, mesh, field=odd)
+    rejected(wording("sizes-are-not-positive-numbers"), tl.metric, mesh, sizes=odd)
+    rejected(wording("sizes-are-not-positive-numbers"), tl.metric, mesh, sizes=-x)
+    rejected(wording("sizes-are-not-positive-numbers"), tl.metric, mesh, sizes=0 * x)
+    rejected(wording("metric-tensors-are-not-positive-definite"), tl.metric, mesh, sizes=np.ones((25, 6)))
+    rejected(wording("the-array-of-sizes-has-3"), tl.metric, mesh, sizes=np.ones((25, 3)))
+    rejected("target_value", tl.metric, mesh, field=x, target_value=0)
+    rejected("target_value", tl.metric, mesh, field=x, target_value=-1)
+    rejected("smallest_size", tl.metric, mesh, smallest_size=-0.1)
+    rejected(wording("gradation-is-at-most-1"), tl.metric, mesh, gradation=1)
+    rejected(wording("norm-is-below-1"), tl.metric, mesh, field=x, norm=0.5)
+    rejected(wording("the-double-projection-takes"), tl.metric, DATA / "zoo.mesh",
             field=np.zeros(tl.read(DATA / "zoo.mesh").GetNumberOfPoints()), recovery="double projection")  # fmt: skip
-    refused(wording("cells-are-of-higher-order-run-curve"), tl.metric, tl.curve(mesh, 2))
+    rejected(wording("cells-are-of-higher-order-run-curve"), tl.metric, tl.curve(mesh, 2))
     point = tl.from_arrays(np.zeros((3, 3)), {"triangle": [[0, 1, 2]]})
-    refused(wording("all-points-are-at-one-place"), tl.metric, point)
+    rejected(wording("all-points-are-at-one-place"), tl.metric, point)
     broken = square(2)
     points(broken)[0, 0] = np.nan
-    refused(wording("not-a-finite-number"), tl.metric, broken)
+    rejected(wording("not-a-finite-number"), tl.metric, broken)
     empty = tl.metric(vtkUnstructuredGrid())
     assert empty.elements == 0 and wording("has-no") in empty.summary
 

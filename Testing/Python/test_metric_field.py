@@ -3,7 +3,7 @@
 
 import numpy as np
 import tautline as tl
-from checks import refused, run_tests, wording
+from checks import rejected, run_tests, wording
 
 ROOT3 = 3**0.5
 
@@ -19,11 +19,11 @@ def test_metric_field():
     flat = tl.metric_field("untangle_beta", bounds=(0, 1, 0, 2), dimensions=(2, 5))
     assert np.allclose(flat.values["untangle_beta"][:, 0], [0.25, 0, 0, 0, 0]), "(3.3) at y = 0, 0.5, ..."
     assert tl.metric_field("untangle_beta", beta=0.0).values["untangle_beta"].max() == 0
-    refused("beta", tl.metric_field, beta=float("nan"))
-    refused(wording("there-are-triangle-tetrahedron"), tl.metric_field, cell="prism")
-    refused(wording("vertices-have-the-shape-1-3"), tl.metric_field, vertices=[[0, 0, 0]])
-    refused(wording("whole-numbers-from-1"), tl.metric_field, dimensions=(0, 1, 1))
-    refused(wording("no-metric-nope"), tl.metric_field, "nope")
+    rejected("beta", tl.metric_field, beta=float("nan"))
+    rejected(wording("there-are-triangle-tetrahedron"), tl.metric_field, cell="prism")
+    rejected(wording("vertices-have-the-shape-1-3"), tl.metric_field, vertices=[[0, 0, 0]])
+    rejected(wording("whole-numbers-from-1"), tl.metric_field, dimensions=(0, 1, 1))
+    rejected(wording("no-metric-nope"), tl.metric_field, "nope")
 
 
 run_tests(globals())

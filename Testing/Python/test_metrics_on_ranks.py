@@ -39,7 +39,7 @@ one, text = run_with_output("metrics_on_ranks.py", 1)
 assert text.count("ERR|") == 1 and wording("without-derivatives-of-its-own") in text, text
 assert one["loaded"] == ["height", "slenderness"], one["loaded"]
 
-# The values of one process are those of numpy.
+# The values of one process equal numpy's.
 places, cells = simplices(5)
 inner = np.logical_and(places > 0, places < 5)
 corners = (places + inner * np.random.default_rng(4).uniform(-0.3, 0.3, places.shape))[cells]
@@ -81,9 +81,9 @@ for ranks in (2, 3):
         check_table(table, other, f"{ranks} ranks, ghosts")
     assert ghosts["summary"] == alone["summary"], ghosts["summary"]
     assert text.count(wording("without-derivatives-of-its-own")) == ranks, text
-    # What the first process has registered alone: each reports it.
+    # A metric that only the first process has registered: each reports it.
     for name in ("quality", "compare", "optimize", "improve"):
-        assert found[f"refused {name}"] == [0, ""], (name, found[f"refused {name}"])
+        assert found[f"rejected {name}"] == [0, ""], (name, found[f"rejected {name}"])
     message = "is not registered in this process. Register it in all processes of the server"
     assert text.count(message) == 4 * ranks and text.count("ERR|") == 5 * ranks, text
     assert f"process {ranks - 1} of the server cannot load the metrics: " in found["wrong"], found["wrong"]

@@ -35,7 +35,7 @@ FLOORS = (
     PARTS,
     ("_quality",),
 )
-#: What calls functions of several capabilities.
+#: Modules that call functions of several capabilities.
 ABOVE = ("_adapt",)
 TYPE_CHECKING = re.compile(r"^if TYPE_CHECKING:\n(    .*\n)+", re.MULTILINE)
 IMPORT = re.compile(r"^\s*from \.(\w*) import (.*)$", re.MULTILINE)

@@ -3,13 +3,14 @@
 
 import numpy as np
 from on_ranks import run
+from wording import wording
 
 CLOSE = 1e-10
 GLOBAL = ("L-BFGS", "Newton-CG")
 DIVISIONS = {"k-d Tree": ".", "PT-Scotch": " by PT-Scotch."}  # and what the summary ends with
-# What is gathered, and the reason that the summary states.
+# Operations that gather the mesh, and the reason in the summary.
 GATHERED = {
-    "turned": "cells list their points in opposite orders, or parts of it are reversed and others are not.",
+    "turned": "cells list their points in opposite orders, or only parts of it are reversed.",
     "broken": " has a coordinate that is not finite: remove its cells first, by Threshold or Clean to Grid.",
 }
 BROKEN = 3  # coordinates of the points that are not finite
@@ -29,7 +30,7 @@ def check_gathered(ranks: int, found: dict, one: dict) -> None:
             stated = "The mesh was put together on the first process: " in case["summary"]
             assert stated == (ranks > 1), (ranks, name, cut, case["summary"])
             assert not stated or case["summary"].endswith(why), (ranks, name, cut, case["summary"])
-            # Each rank has arrays of the same types: else filters and files that join pieces drop them.
+            # Each rank has arrays of the same types: otherwise filters and files that join pieces drop them.
             assert case.get("types", []) == expected.get("types", []) * ranks, (ranks, name, cut, case.get("types"))
             print(ranks, "ranks, gathered:", name, cut, "farthest", far)
 
@@ -68,7 +69,7 @@ for ranks in (1, 2, 3, 4):
         for cut in (0, 1):
             case = found[f"{name} {cut}"]
             by = DIVISIONS.get(name, ".")
-            divided = f"The mesh was divided anew among {ranks} processes{by}" in case["summary"]
+            divided = f"The mesh was {wording('divided-anew')} among {ranks} processes{by}" in case["summary"]
             assert divided == (name in DIVISIONS and ranks > 1), (ranks, name, cut, case["summary"])
             far = np.abs(np.array(case["points"]) - np.array(expected["points"])).max()
             assert far <= CLOSE, (ranks, name, cut, far)

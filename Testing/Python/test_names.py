@@ -5,7 +5,7 @@ import argparse
 import inspect
 
 import tautline as tl
-from checks import DATA, OUT, refused, run_tests, shell, wording
+from checks import DATA, OUT, rejected, run_tests, shell, wording
 from tautline.__main__ import _parser
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
@@ -39,24 +39,24 @@ def test_second_argument():
         assert list(tl.optimize(PLATE, objectives).statistics) == ["mu_shape"]
     thorough = tl.untangle(TANGLED, "thorough")
     assert thorough == tl.untangle(TANGLED, preset="thorough") == tl.untangle(TANGLED, effort="thorough")
-    refused(wording("two-presets-are-given"), tl.optimize, PLATE, "best shape", objectives="worst element")
-    refused(wording("objectives-are-given-twice"), tl.optimize, PLATE, ["imr"], objectives=["imr"])
-    refused(wording("no-preset-and-no-metric"), tl.optimize, PLATE, "imrr")
-    refused(wording("preset-is-best-shpae-did-you-mean"), tl.optimize, PLATE, "best shpae")
-    refused(wording("mean-the-same"), tl.untangle, TANGLED, "local", effort="local")
-    refused(wording("is-a-preset-of-criteria"), tl.quality, PLATE, "fem")
+    rejected(wording("two-presets-are-given"), tl.optimize, PLATE, "best shape", objectives="worst element")
+    rejected(wording("objectives-are-given-twice"), tl.optimize, PLATE, ["imr"], objectives=["imr"])
+    rejected(wording("no-preset-and-no-metric"), tl.optimize, PLATE, "imrr")
+    rejected(wording("preset-is-best-shpae-did-you-mean"), tl.optimize, PLATE, "best shpae")
+    rejected(wording("mean-the-same"), tl.untangle, TANGLED, "local", effort="local")
+    rejected(wording("is-a-preset-of-criteria"), tl.quality, PLATE, "fem")
     for name in ("optimize", "untangle", "improve"):
         assert list(inspect.signature(getattr(tl, name)).parameters)[1] == "preset", name
 
 
 def test_wrong_names():
-    refused(wording("preset-is-best-shpae-did-you-mean"), tl.optimize, PLATE,
+    rejected(wording("preset-is-best-shpae-did-you-mean"), tl.optimize, PLATE,
             preset="best shpae")  # fmt: skip
-    refused(wording("effort-is-thorugh-did-you-mean-thorough"), tl.untangle, PLATE, "Thorugh")
-    refused(wording("preconditioner-is-boomramg-did-you-mean-boomeramg"), tl.solve, PLATE, preconditioner="boomramg")
-    refused(wording("pde-is-xyz-there-are-poisson"), tl.solve, PLATE, "xyz")
-    refused(wording("effort-is-none-there-are"), tl.untangle, PLATE, None)
-    refused(wording("did-you-mean-fem-2"), tl.criteria, "fen")
+    rejected(wording("effort-is-thorugh-did-you-mean-thorough"), tl.untangle, PLATE, "Thorugh")
+    rejected(wording("preconditioner-is-boomramg-did-you-mean-boomeramg"), tl.solve, PLATE, preconditioner="boomramg")
+    rejected(wording("pde-is-xyz-there-are-poisson"), tl.solve, PLATE, "xyz")
+    rejected(wording("effort-is-none-there-are"), tl.untangle, PLATE, None)
+    rejected(wording("did-you-mean-fem-2"), tl.criteria, "fen")
 
 
 def test_shell():
@@ -69,8 +69,8 @@ def test_shell():
     shell("solve", PLATE, "--preconditioner", "AMG", "--solver", "Bi-CGSTAB")
 
 
-#: What a shell needs no option for: it shows progress on a terminal, is one process, prints text, and has mesh, file
-#: and motion under other names.
+#: Arguments without an option on the shell: it shows progress on a terminal, is one process, prints text, and has mesh,
+#: file and motion under other names.
 NOT_IN_SHELL = {"progress", "redistribute", "gather_below", "rounds", "file", "outline", "surface", "transform",
                 "series", "sparsity", "target"}  # fmt: skip
 
@@ -93,7 +93,7 @@ def test_shell_has_all():
 
 
 def test_shell_options():
-    """What was given on the shell arrives: the result is that of the function."""
+    """The arguments of the shell arrive: the result equals the function's."""
     out = OUT / "names.vtu"
     shell("optimize", PLATE, "--objective", "imr,template=power mean", "--power", 4, "--relative-change", 1e-3,
           "--no-untangle-first", "--limits", 0.02, "--two-digits", "-o", out)  # fmt: skip

@@ -8,8 +8,8 @@ import numpy as np
 from on_ranks import run_with_output
 
 CLOSE = 1e-9
-REFUSALS = {
-    "cells that are no triangles (quadrilateral)": 2, "lists point 100000": 2, "the horizon has to be above 0": 1,
+REJECTIONS = {
+    "cells that are not triangles (quadrilateral)": 2, "lists point 100000": 2, "the horizon must be above 0": 1,
     "the width of the interaction layer is": 1, "The time limit of 0.2 s is reached": 1, "no area": 1,
 }  # fmt: skip
 
@@ -29,7 +29,7 @@ def triangles_of(case: list) -> list:
 
 
 one, text = run_with_output("nonlocal_on_ranks.py", 1)
-for problem, times in REFUSALS.items():
+for problem, times in REJECTIONS.items():
     assert text.count(problem) == times, (problem, text)
 for case, value in one.items():
     if case.startswith("horizon"):
@@ -63,7 +63,7 @@ for ranks in (2, 3, 4):
             assert total.tolist() == expected[0], (where, found[case], expected)
             assert case == "counts two ranks" or len(found[case]) == ranks, (where, found[case])
             assert (np.asarray(found[case])[:, 1] > 0).all(), (where, found[case])
-        elif case.startswith("refused"):
+        elif case.startswith("rejected"):
             assert found[case] == expected == 0, where
-    for problem, times in {**REFUSALS, "Several cells have the global id 0": 2}.items():
+    for problem, times in {**REJECTIONS, "Several cells have the global id 0": 2}.items():
         assert text.count(problem) == times * ranks, (ranks, problem, text)

@@ -87,7 +87,7 @@ def check_same(one, other) -> None:
 
 
 def check_counts(case: Path, *options: str, **how) -> None:
-    """Points, faces and cells by their type are those of checkMesh."""
+    """Points, faces and cells by their type match checkMesh."""
     log = openfoam(case, "checkMesh", "-constant", *options)
 
     def count(name: str) -> int:
@@ -188,7 +188,7 @@ def test_order():
 
 
 def test_written():
-    """What is written back is read by OpenFOAM: all is as it was but the points inside."""
+    """OpenFOAM reads the written case: everything is unchanged except the points inside."""
     case = made(JUNCTION, "written")
     folder = case / "constant" / "polyMesh"
     before = {file.name: file.read_bytes() for file in folder.iterdir()}

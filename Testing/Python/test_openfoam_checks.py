@@ -38,8 +38,8 @@ IN_PIECES = ("heatTransfer/chtMultiRegionFoam/multiRegionHeater", "DNS/dnsFoam/b
 PIECES = 3
 #: Meshes that are compared at least.
 LEAST = 45
-#: What is made beside them, with faults of all kinds; these the reader refuses.
-REFUSED = {"synthetic_corner_twice", "synthetic_face_twice", "synthetic_open_cell"}
+#: Meshes that are made beside them, with faults of all kinds; the reader rejects these.
+REJECTED = {"synthetic_corner_twice", "synthetic_face_twice", "synthetic_open_cell"}
 #: checkMesh gives a mesh without any direction an aspect ratio of -1.
 OTHER = {"synthetic_empty_odd"}
 #: Meshes of repair_cases.py, and how far points of others are moved.
@@ -60,7 +60,7 @@ def made(name: str, *arguments: str) -> Path:
 
 
 def failed_checks(case: Path) -> int:
-    """What checkMesh says."""
+    """The verdict of checkMesh."""
     log = case / "log.again"
     with log.open("w", encoding="utf-8") as output:
         subprocess.run(["checkMesh", "-constant"], cwd=case, env=ENVIRONMENT, stdout=output, check=True)
@@ -80,8 +80,8 @@ def test_agreement() -> None:
     """Every field and the number of failed checks."""
     found = [compare(file.parent) for file in sorted(CASES.glob("*/log.checkMesh"))]
     assert len(found) >= LEAST, len(found)
-    assert {one.name for one in found if one.refused} == REFUSED, [one.refused for one in found]
-    wrong = [one for one in found if not one.agrees and one.name not in REFUSED | OTHER]
+    assert {one.name for one in found if one.rejected} == REJECTED, [one.rejected for one in found]
+    wrong = [one for one in found if not one.agrees and one.name not in REJECTED | OTHER]
     assert not wrong, [(one.name, one.failed, one.failed_by_checkmesh, one.wrong) for one in wrong]
     assert any(one.failed for one in found) and any(one.failed == 0 for one in found)
 
@@ -111,10 +111,10 @@ def test_page() -> None:
     assert len(cases.meshes) == before
     compared = [compare_mesh(mesh, name) for name, mesh in cases.meshes.values()]
     text = page(cases, compared)
-    refused = sum(one.refused != "" for one in compared)
+    rejected = sum(one.rejected != "" for one in compared)
     agreeing = sum(one.agrees for one in compared)
     cells = sum(one.cells for one in compared)
-    assert f"| all | {before} | {cells} | {agreeing} | {before - agreeing - refused} | {refused} |" in text
+    assert f"| all | {before} | {cells} | {agreeing} | {before - agreeing - rejected} | {rejected} |" in text
     rows = [line for line in text.split("## Meshes")[1].splitlines() if line.startswith("|synthetic")]
     assert len(rows) == sum(one.name.startswith("synthetic/") for one in compared)
     assert all(f"  - {one.name}" in text for one in compared if not one.agrees)
@@ -130,7 +130,7 @@ def test_untangle_polyhedra() -> None:
 
 
 def test_repair() -> None:
-    """OpenFOAM itself says so, of the case that the shell has changed; the boundary is where it was."""
+    """OpenFOAM itself confirms it for the case that the shell has changed; the boundary is where it was."""
     for name in REPAIRED:
         case = CASES / name
         assert failed_checks(case) > 0, name

@@ -5,7 +5,7 @@ import csv
 
 import numpy as np
 import tautline as tl
-from checks import DATA, OUT, points, refused, run_tests, shell as run, wording
+from checks import DATA, OUT, points, rejected, run_tests, shell as run, wording
 from vtkmodules.vtkCommonCore import VTK_DOUBLE, VTK_INT, vtkIntArray, vtkPoints
 from vtkmodules.vtkCommonDataModel import VTK_QUAD, vtkImageData, vtkMultiBlockDataSet, vtkUnstructuredGrid
 from vtkmodules.vtkFiltersSources import vtkSphereSource
@@ -94,8 +94,8 @@ def test_features():
         ({"geometry": larger, "keep_features": False}, "Keep Features"),
         ({"feature_angle": 200}, "feature_angle"),
     ):
-        refused(message, tl.optimize, mesh, **wrong)
-    refused(wording("planar-mesh"), tl.optimize, PLATE, geometry=larger, boundary="on surface")
+        rejected(message, tl.optimize, mesh, **wrong)
+    rejected(wording("planar-mesh"), tl.optimize, PLATE, geometry=larger, boundary="on surface")
     # the shell
     path, out, other = OUT / "cube.vtu", OUT / "cube-features.vtu", OUT / "cube-larger.vtu"
     tl.write(mesh, path)
@@ -149,7 +149,7 @@ def test_regions_and_geometry_of_files():
     result = tl.optimize(ball, geometry=stl)
     radius = np.linalg.norm(points(result.mesh), axis=1)
     assert radius.min() > 0.519 and radius.max() < 0.5201, (radius.min(), radius.max())
-    # The facets of the coarse mesh are chords: farthest from the sphere in their middle or in that of an edge.
+    # The facets of the coarse mesh are chords: farthest from the sphere in their middle or at the midpoint of an edge.
     triangles = [[ball.GetCell(c).GetPointId(k) for k in range(3)] for c in range(ball.GetNumberOfCells())]
     corners = points(result.mesh)[triangles]
     middles = np.concatenate([corners.mean(axis=1), *(corners[:, [k, k - 1]].mean(axis=1) for k in range(3))])
@@ -213,18 +213,18 @@ def test_worst_metric():
     solid = tl.optimize(BRACKET, preset="worst element").statistics["imr"]
     assert solid["worst_after"] <= tl.optimize(BRACKET).statistics["imr"]["worst_after"] <= solid["worst_before"]
     by_angle = tl.optimize(BRACKET, preset="worst element", worst_metric="min_angle")
-    angle = by_angle.statistics["min_angle"]  # the metric chosen is reported, too
+    angle = by_angle.statistics["min_angle"]  # the chosen metric is also reported
     least = tl.quality(by_angle.mesh, "min_angle").statistics["min_angle"]["minimum"]
     assert angle["worst_before"] <= angle["worst_after"] == least, angle
     assert f"worst {angle['worst_before']:g} to {least:g}." in by_angle.summary.splitlines()[-1], by_angle.summary
-    refused(wording("no-metric-beauty"), tl.optimize, PLATE, worst_metric="beauty")
+    rejected(wording("no-metric-beauty"), tl.optimize, PLATE, worst_metric="beauty")
 
 
 def test_ranges():
-    """Numbers out of range are refused with the range in words."""
+    """Numbers out of range are rejected with the range in words."""
     for option, value, allowed in (("power", 0, "above 0"), ("relaxation", 2.5, "from 1 to 1.99")):
-        refused(f"{option} is {value}; it must be a number {allowed}", tl.optimize, PLATE, ["imr"], **{option: value})
-    refused(wording("time-limit-is-1-it-must-be"), tl.optimize, PLATE, time_limit=-1)
+        rejected(f"{option} is {value}; it must be a number {allowed}", tl.optimize, PLATE, ["imr"], **{option: value})
+    rejected(wording("time-limit-is-1-it-must-be"), tl.optimize, PLATE, time_limit=-1)
 
 
 def test_remaining_inverted():
@@ -250,25 +250,25 @@ def test_integer_points():
 
 
 def test_free_boundary():
-    """Uniform size keeps the mean size although the boundary moves; what would shrink the mesh is refused."""
+    """Uniform size keeps the mean size although the boundary moves; options that would shrink the mesh are rejected."""
     moved = tl.perturb(PLATE, percentage=100, fraction=0.6).mesh
     sizes = tl.quality(moved, "size").values["size"]
     result = tl.optimize(moved, preset="uniform size", boundary="free")
     after = tl.quality(result.mesh, "size").values["size"]
     assert result.inverted == 0
     assert abs(after.mean() / sizes.mean() - 1) < 0.1 and after.std() < 0.5 * sizes.std(), (after.mean(), after.std())
-    refused("shrink", tl.optimize, moved, preset="low interpolation error", boundary="free")
-    refused("shrink", tl.optimize, moved, ["size"], boundary="free")
+    rejected("shrink", tl.optimize, moved, preset="low interpolation error", boundary="free")
+    rejected("shrink", tl.optimize, moved, ["size"], boundary="free")
 
 
 def test_best_known():
-    """None is an unknown optimum; 0, that of untangling, is a known one, which IMR cannot come close to."""
+    """None is an unknown optimum; 0, the optimum of untangling, is a known one, which IMR cannot come close to."""
     estimated = tl.optimize(BRACKET, ["imr"], reduction=0.5)
     assert "reduction" in estimated.reason
     assert tl.optimize(BRACKET, ["imr"], reduction=0.5, best_known=None).iterations == estimated.iterations
     known = tl.optimize(BRACKET, ["imr"], reduction=0.5, best_known=0)
     assert "Converged" in known.reason and known.iterations > estimated.iterations
-    refused("best_known", tl.optimize, BRACKET, ["imr"], best_known="0")
+    rejected("best_known", tl.optimize, BRACKET, ["imr"], best_known="0")
 
 
 def test_points_that_leave_the_surface():
@@ -316,8 +316,8 @@ def test_points_that_stay():
     assert 0 < on_surface.surface_error < 0.05 * np.ptp(points(mesh)) and on_surface.inverted == 0
     near = tl.optimize(mesh, boundary="on surface", surface_tolerance=2e-5)
     assert 0 < near.surface_error <= 2e-5 * mesh.GetLength() < on_surface.surface_error
-    refused("surface_tolerance", tl.optimize, mesh, boundary="on surface", surface_tolerance=-1)
-    refused(wording("needs-a-local-optimizer"), tl.optimize, mesh, optimizer="l-bfgs", boundary="on surface")
+    rejected("surface_tolerance", tl.optimize, mesh, boundary="on surface", surface_tolerance=-1)
+    rejected(wording("needs-a-local-optimizer"), tl.optimize, mesh, optimizer="l-bfgs", boundary="on surface")
     weights = np.zeros(mesh.GetNumberOfCells())
     weights[0] = 1
     weighted = tl.optimize(mesh, element_weights=weights)
@@ -339,7 +339,7 @@ def test_blocks_and_arrays():
     assert np.allclose(points(result.mesh)[4], [0.5, 0.5, 0], atol=1e-2)
 
 
-def test_refused():
+def test_rejected():
     for text, options in (
         ("no metric 'nope'", {"objectives": ["nope"]}),
         ("template is 'x'", {"objectives": [("imr", {"template": "x"})]}),
@@ -361,13 +361,13 @@ def test_refused():
         ("each of the 1913 cells", {"element_weights": [1]}),
         ("no point array 'x'", {"fixed": "x"}),
     ):
-        refused(text, tl.optimize, PLATE, **options)
+        rejected(text, tl.optimize, PLATE, **options)
     image = vtkImageData()
     image.SetDimensions(3, 3, 3)
-    refused("implicit", tl.optimize, image)
-    refused("implicit", tl.untangle, image)
-    refused(wording("effort-is-x"), tl.untangle, PLATE, "x")
-    refused(wording("there-is-no-such-file"), tl.untangle, "absent.vtu")
+    rejected("implicit", tl.optimize, image)
+    rejected("implicit", tl.untangle, image)
+    rejected(wording("effort-is-x"), tl.untangle, PLATE, "x")
+    rejected(wording("there-is-no-such-file"), tl.untangle, "absent.vtu")
 
 
 def test_untangle():
@@ -380,13 +380,13 @@ def test_untangle():
     assert worst.inverted_before == 41 and worst.inverted == 0 and wording("untangled-first") in worst.summary
     stopped = tl.optimize(TANGLED, time_limit=1e-6)  # one limit for untangling and optimization
     assert stopped.inverted > 0 and wording("untangling-came-first-and-left-some") in stopped.summary, stopped.summary
-    refused(wording("untangle-first"), tl.optimize, TANGLED, untangle_first=False)
+    rejected(wording("untangle-first"), tl.optimize, TANGLED, untangle_first=False)
     shown = tl.untangle(TANGLED, show_features=True).mesh.GetPointData().GetArray("FeatureKind")
     assert result.mesh.GetPointData().GetArray("FeatureKind") is None and shown.GetRange() == (0, 2)
     every = tl.untangle(TANGLED, method="simultaneous")  # moves all, and smooths
     assert every.inverted == 0 and tl.quality(every, "imr").values["imr"].mean() < tl.quality(
         result, "imr").values["imr"].mean()
-    refused(wording("method-is-x"), tl.untangle, TANGLED, method="x")
+    rejected(wording("method-is-x"), tl.untangle, TANGLED, method="x")
     ball = vtkSphereSource()
     ball.SetThetaResolution(20)
     ball.SetPhiResolution(20)

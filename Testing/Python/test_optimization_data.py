@@ -13,8 +13,8 @@ for file in files:
     print(f"{file.name}: {result.inverted_before} inverted, now none")
 
 # The worst scaled Jacobian of the input; what it must be at least with the boundary fixed, where the facets bound it,
-# with points that leave it by so many diagonals, and with points that slide on it without a limit. HexOpt reaches 0.12
-# and 0.60, and 0.32 on lower_arm with another surface mesh (arXiv 2410.11656).
+# with points that leave it by this many diagonals, and with points that slide on it without a limit. HexOpt reaches
+# 0.12 and 0.60, and 0.32 on lower_arm with another surface mesh (arXiv 2410.11656).
 HEXAHEDRA = {"CAD4": (0.069, {"fixed": 0.09, 0.001: 0.60, "unlimited": 0.60}),
              "rkm012": (0.467, {"fixed": 0.57, 0.001: 0.60}), "lower_arm": (0.103, {0.001: 0.28})}
 folder = test_data("hex")

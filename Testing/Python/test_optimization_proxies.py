@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Optimize Mesh and Untangle Mesh through ParaView: properties by name, tables, state file, animation, colours."""
+"""Optimize Mesh and Untangle Mesh through ParaView: properties by name, tables, state file, animation, colors."""
 
 import os
 from pathlib import Path

@@ -6,7 +6,7 @@ from importlib import import_module
 import numpy as np
 import tautline
 from checks import OUT, shell, wording
-from study_checks import Studies, pictures, refused_command
+from study_checks import Studies, pictures, rejected_command
 from tautline.studies import _common, _literal, _tangled, _verdicts, names, smoothing_times, toy
 from wrong_data import verdicts
 
@@ -75,7 +75,7 @@ def check_list():
     assert set(STUDIES) <= set(names())
     listed = shell("study", "list")
     assert all(name in listed and import_module(f"tautline.studies.{name}").__doc__ for name in STUDIES)
-    refused_command("there is no study 'nonsense'", "study", "nonsense", code=2)
+    rejected_command("there is no study 'nonsense'", "study", "nonsense", code=2)
 
 
 def check_toy():
@@ -134,7 +134,7 @@ def made_run(name, inverted, failure="", reason="The limit of iterations is reac
 def check_failed_runs():
     """A failed run has no numbers after its end and decides nothing, nor does the only method that is left."""
     stuck = made_run("objective-product", [5, 2], "No step reduces the objective.")
-    done = made_run("exponential-sum", [5, 1, 0], reason="Converged: the objective hardly changes any more.")
+    done = made_run("exponential-sum", [5, 1, 0], reason="Converged: the objective hardly changes anymore.")
     limit = made_run("equal-sum", [5, 1, 0])
     assert np.isnan(stuck.at("inverted", 9)) and np.isnan(stuck.last("inverted")) and stuck.at("inverted", 1) == 2
     assert done.at("inverted", 9) == 0 and np.isnan(limit.at("inverted", 9)), "only a converged run goes on as it ends"
@@ -205,7 +205,7 @@ def check_own_mesh():
     quality = studies.column("own", "quality", "method", "imr_mean")
     assert len(quality) == 6 and all(v < quality["start"] for m, v in quality.items() if m != "start"), quality
     assert not studies.rows("own", "findings")
-    refused_command("--metrics needs --mesh", "study", "shape_size", "--small", "--metrics", "imr", "rr")
+    rejected_command("--metrics needs --mesh", "study", "shape_size", "--small", "--metrics", "imr", "rr")
 
 
 def check_angles():

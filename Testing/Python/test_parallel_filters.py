@@ -43,7 +43,7 @@ def compare(found, expected, where: str, tolerance: float = CLOSE) -> None:
 
 
 def check_untangled(found: dict, several: dict, ranks: int) -> None:
-    """What untangles or optimizes takes another order on several ranks, always the same."""
+    """Untangling and optimization use another order on several ranks, always the same one."""
     for case, key in itertools.product(CASES, ORDERED):
         where = f"{key} {case}"
         (points, *counts, summary), (expected, *numbers, first) = found.pop(where), one[where]
@@ -83,7 +83,7 @@ for case in CASES:
 for ranks in (2, 3, 4):
     found = run(ranks)
     assert found.pop("ranks") == ranks
-    assert all(found[key] == 0 for key in found if key.startswith("refused"))
+    assert all(found[key] == 0 for key in found if key.startswith("rejected"))
     assert found["image"] == "", (ranks, found["image"])
     assert found.pop("upstream") == [0, ""], found
     check_untangled(found, several, ranks)

@@ -3,6 +3,7 @@
 
 import numpy as np
 from on_ranks import run_with_output
+from wording import wording
 
 CLOSE = 1e-8
 ROUNDING = 1e-12
@@ -49,12 +50,12 @@ for ranks in (1, 2, 4):
     for key in ("elastic", "held", "image"):
         assert close(found[key], one[key]), (ranks, key)
     assert close(found["divided"], one["poisson 0 0"]), ranks
-    sentence = f"The mesh was divided anew among {ranks} processes by PT-Scotch."
+    sentence = f"The mesh was {wording('divided-anew')} among {ranks} processes by PT-Scotch."
     assert (found["division"] == sentence) == (ranks > 1), (ranks, found["division"])
     assert close(found["condition"], one["condition"], 1e-4), found["condition"]
     assert abs(found["shares"] - 1) < 1e-6, found["shares"]
     assert found["study"] == [1, 1, 1] and found["history"] and found["late"]
-    assert all(value == 0 for key, value in found.items() if key.startswith("refused"))
+    assert all(value == 0 for key, value in found.items() if key.startswith("rejected"))
     # Metric Field and Mesh Domain: value by value. A domain is whole on the first rank.
     for key in ("mean_ratio", "condition_number", "Validity"):
         assert found[f"metric field {key}"] == one[f"metric field {key}"], (ranks, key)

@@ -6,7 +6,7 @@ import math
 import checks
 import numpy as np
 import tautline as tl
-from checks import points, refused, run_tests, shell, square, wording
+from checks import points, rejected, run_tests, shell, square, wording
 from study_checks import Studies
 from tautline._choices import PERIDYNAMICS_PRECONDITIONERS
 from tautline.studies import _horizon, names, nonlocal_preconditioner, peridynamics_tables, state_based
@@ -27,8 +27,8 @@ def test_functions():
     assert result.rows == 81 and result.nonzeros == result.sparsity.sum() == 2361
     assert result.sparsity.shape == (30, 30) and (np.diag(result.sparsity) > 0).all()
     assert result.solution.shape == (mesh.GetNumberOfPoints(),) and result.solution.max() > 0.1
-    neighbours = vtk_to_numpy(result.mesh.GetPointData().GetArray("Neighbors"))
-    assert neighbours.sum() == 2361 - 81
+    neighbors = vtk_to_numpy(result.mesh.GetPointData().GetArray("Neighbors"))
+    assert neighbors.sum() == 2361 - 81
     assert result.smallest_bound < 1e-8 * result.smallest and wording("condition-number-9-28") in result.summary
     assert tl.peridynamics(mesh, threads=1).condition == tl.peridynamics(mesh, threads=2).condition
 
@@ -48,19 +48,19 @@ def test_functions():
     literal = tl.peridynamics(mesh, 0.2, 2.5, discretization="dissertation", rules="literal")
     assert literal.asymmetry < 1e-12 and not literal.condition < 100, "far from 12, or indefinite"
 
-    refused(REMEDY, tl.peridynamics, bare)
-    refused(wording("has-no-interaction-layer"), tl.peridynamics, mesh, region=None)
-    refused(wording("an-interaction-layer-of-width"), tl.peridynamics, mesh, 0.5)
-    refused(wording("to-below-4"), tl.peridynamics, mesh, p=4)
-    refused(wording("to-below-3"), tl.peridynamics, mesh, p=3, basis="constant")
-    refused(wording("basis-is-quadratic"), tl.peridynamics, mesh, basis="quadratic")
-    refused(wording("no-array-absent"), tl.peridynamics, mesh, region="absent")
-    refused("above 0", tl.interaction_layer, bare, 0)
+    rejected(REMEDY, tl.peridynamics, bare)
+    rejected(wording("has-no-interaction-layer"), tl.peridynamics, mesh, region=None)
+    rejected(wording("an-interaction-layer-of-width"), tl.peridynamics, mesh, 0.5)
+    rejected(wording("to-below-4"), tl.peridynamics, mesh, p=4)
+    rejected(wording("to-below-3"), tl.peridynamics, mesh, p=3, basis="constant")
+    rejected(wording("basis-is-quadratic"), tl.peridynamics, mesh, basis="quadratic")
+    rejected(wording("no-array-absent"), tl.peridynamics, mesh, region="absent")
+    rejected("above 0", tl.interaction_layer, bare, 0)
     assert tl.peridynamics(mesh, 0.5, allow_thin_layer=True).layer_deficit > 0.2
 
 
 def test_preconditioners():
-    """The same solution with each; the condition number from the iterations is that of the spectrum."""
+    """The same solution with each; the condition number from the iterations matches the spectrum."""
     mesh = tl.interaction_layer(square(20), 0.2)
     found = {name: tl.peridynamics(mesh, 0.2, 2.5, solve=True, preconditioner=name)
              for name in PERIDYNAMICS_PRECONDITIONERS}  # fmt: skip
@@ -72,13 +72,13 @@ def test_preconditioners():
         assert name == "jacobi" or result.preconditioned_condition < 0.5 * expected.preconditioned_condition, name
     none = tl.peridynamics(mesh, spectrum=False)
     assert none.iterations == 0 and math.isnan(none.preconditioned_condition)
-    refused(wording("preconditioner-is-ilu"), tl.peridynamics, mesh, solve=True, preconditioner="ilu")
+    rejected(wording("preconditioner-is-ilu"), tl.peridynamics, mesh, solve=True, preconditioner="ilu")
     for name in ("local amg", "two-level"):
-        refused(wording("choose-jacobi"), tl.peridynamics, mesh, solve=True, preconditioner=name, constrained=False)
+        rejected(wording("choose-jacobi"), tl.peridynamics, mesh, solve=True, preconditioner=name, constrained=False)
 
 
 def test_state_based():
-    """Patch test through the function; the bond-based model at its Poisson's ratio; refusals."""
+    """Patch test through the function; the bond-based model at its Poisson's ratio; rejections."""
     mesh = tl.interaction_layer(square(10), 0.4)
     at = vtk_to_numpy(mesh.GetPoints().GetData())
     moved = np.column_stack([0.3 * at[:, 0] + 0.1 * at[:, 1], 0.5 * at[:, 1], 0 * at[:, 0]])
@@ -96,10 +96,10 @@ def test_state_based():
     assert abs(tl.peridynamics(mesh, model="state-based").condition / bonds.condition - 1) < 1e-3
     assert tl.peridynamics(mesh, model="state-based", poisson_ratio=0.49).condition > 3 * bonds.condition
     assert bonds.dilatation is not None and tl.peridynamics(mesh, solve=True).dilatation is None
-    refused(wording("twice-the-horizon"), tl.peridynamics, tl.interaction_layer(square(10), 0.2), model="state-based")
-    refused("below 0.5", tl.peridynamics, mesh, model="state-based", poisson_ratio=0.5)
-    refused(wording("take-the-exact"), tl.peridynamics, mesh, model="state-based", discretization="dissertation")
-    refused(wording("plane-is-both"), tl.peridynamics, mesh, plane="both")
+    rejected(wording("twice-the-horizon"), tl.peridynamics, tl.interaction_layer(square(10), 0.2), model="state-based")
+    rejected("below 0.5", tl.peridynamics, mesh, model="state-based", poisson_ratio=0.5)
+    rejected(wording("take-the-exact"), tl.peridynamics, mesh, model="state-based", discretization="dissertation")
+    rejected(wording("plane-is-both"), tl.peridynamics, mesh, plane="both")
 
 
 def test_cut_bonds():
@@ -128,7 +128,7 @@ def test_state_based_study():
              for row in studies.rows("state_based", "plate")}  # fmt: skip
     assert plate["state-based"][-1] < plate["state-based"][0], plate
     points = np.array([[2.0, 0, 0], [0, 3.0, 0], [1.5, 1.5, 0]])
-    # The displacement of Kirsch's plate far away is that of a uniform tension.
+    # The displacement of Kirsch's plate far away is a uniform tension's.
     far = state_based.kirsch(1e6 * points, 0.3) / 1e6
     assert np.abs(far - points * [2 * 1.4, -2 * 0.6, 0]).max() < 1e-5, far
 
@@ -199,7 +199,7 @@ def stated(calls):
 
 
 def test_preconditioner_study():
-    """Small numbers of iterations; those of Jacobi in place of the new ones change the verdicts."""
+    """Small numbers of iterations; Jacobi's numbers instead of the new ones change the verdicts."""
     studies = Studies(OUT / "studies")
     study = nonlocal_preconditioner
     studies.run("nonlocal_preconditioner", "--threads", "1")
@@ -208,7 +208,7 @@ def test_preconditioner_study():
                   {"tables": 36, "exponents": 8, "small_horizons": 4, "unstructured": 8, "seconds": 3})
     for row in studies.rows("nonlocal_preconditioner", "tables"):
         assert all(int(row[f"{name} iterations"]) < 30 for name in study.NEW), row
-    grown = []  # iterations as those of Jacobi in the local case: like 1/h
+    grown = []  # iterations as with Jacobi in the local case: like 1/h
     for function, (rows, *_), named in calls:
         if function.__name__ == "horizon_findings":
             wrong = {key: {name: study.Found(2 * key[1], 9.0) for name in row} for key, row in rows.items()}
@@ -219,7 +219,7 @@ def test_preconditioner_study():
 
 
 def check_stated(calls):
-    """What the dissertation states holds with such numbers; growth with a power of 1 is not our h^-(p-2)."""
+    """The dissertation's statements hold with such numbers; growth with a power of 1 is not our h^-(p-2)."""
     found = verdicts(calls, OUT / "stated")
     not_ours = [v for (_, text), v in found.items() if "like h^-(p-2)" in text or "like AR^" in text]
     assert len(found) == 14 and not_ours == ["does not hold"] * 2, found

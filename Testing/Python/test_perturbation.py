@@ -3,7 +3,7 @@
 
 import numpy as np
 import tautline as tl
-from checks import DATA, quadratic_square, refused, run_tests, wording
+from checks import DATA, quadratic_square, rejected, run_tests, wording
 from vtkmodules.vtkCommonDataModel import vtkImageData
 
 BRACKET = DATA / "bracket.vtu"
@@ -19,11 +19,11 @@ def test_perturb():
     assert tangled.inverted == tl.quality(tangled).inverted == round(0.02 * 8140) and abs(tangled.tangled - 0.02) < 1e-4
     still = tl.perturb(mesh, fixed=np.ones(mesh.GetNumberOfPoints(), bool))
     assert still.moved == 0 and still.mesh.GetPointData().GetNumberOfArrays() == 1
-    refused(wording("each-of-the-2343-points"), tl.perturb, mesh, fixed=[1, 2])
-    refused(wording("no-point-array-x"), tl.perturb, mesh, fixed="x")
-    refused("implicit", tl.perturb, vtkImageData())
-    refused(wording("fraction-is-1-5"), tl.perturb, mesh, 1.5)
-    refused(wording("tangle-is-nan"), tl.perturb, mesh, tangle=float("nan"))
+    rejected(wording("each-of-the-2343-points"), tl.perturb, mesh, fixed=[1, 2])
+    rejected(wording("no-point-array-x"), tl.perturb, mesh, fixed="x")
+    rejected("implicit", tl.perturb, vtkImageData())
+    rejected(wording("fraction-is-1-5"), tl.perturb, mesh, 1.5)
+    rejected(wording("tangle-is-nan"), tl.perturb, mesh, tangle=float("nan"))
 
 
 def test_curved():

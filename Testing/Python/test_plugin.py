@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The plugin loads in pvpython, adds its proxies and the colour maps of its arrays."""
+"""The plugin loads in pvpython, adds its proxies and the color maps of its arrays."""
 
 import os
 

@@ -17,7 +17,7 @@ DATA = Path(os.environ["TAUTLINE_DATA_DIR"])
 OUT = Path(os.environ["TAUTLINE_TEST_DIR"])
 #: How many different values are between 0 and 1, at least, and how far they are apart, at most.
 MOVES, JUMP = 3, 0.75
-#: Of the panel of Warp Mesh, not in a menu.
+#: Part of the panel of Warp Mesh, not in a menu.
 HIDDEN = {("filters", "MovingBoundary")}
 
 before = list_proxies.proxies()
@@ -206,7 +206,7 @@ def cases():
 
 
 def algorithm_of(made):
-    """What computes: of a series of files the reader of one file."""
+    """The algorithm that computes: for a series of files the reader of one file."""
     algorithm = made.SMProxy.GetClientSideObject()
     return algorithm.GetReader() if algorithm.IsA("vtkFileSeriesReader") else algorithm
 

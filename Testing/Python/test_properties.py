@@ -20,7 +20,7 @@ from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
 MESH, FISH = OUT / "properties.vtu", DATA / "fish.png"
-#: What comes first where it is not a mesh.
+#: The first argument if it is not a mesh.
 INPUTS = {
     "compare": [MESH, MESH],
     "transfer": [MESH, MESH],
@@ -33,7 +33,7 @@ INPUTS = {
 }
 OTHER = DATA / "plate.vtu"
 ROTATION = {"rotate": 30, "axis": (0, 1, 0), "center": (1, 2, 3)}
-#: What a function needs besides the argument, in Python and on the shell.
+#: Further arguments that a function needs, in Python and on the shell.
 NEEDED = {"warp": ({"transform": {"rotate": 30}}, ["--rotate", "30"])}
 #: Arguments that set other properties than one of their name, and what the filter has then.
 TOGETHER = {
@@ -239,7 +239,7 @@ def other_value(proxy, element):
 
 
 def found(filter_, element):
-    """What the filter has."""
+    """The value of the filter."""
     command = element.get("command")
     if element.tag == "InputProperty":
         return filter_.GetInputDataObject(int(element.get("port_index")), 0) is not None

@@ -5,7 +5,7 @@ import json
 
 import numpy as np
 import tautline as tl
-from checks import DATA, OUT, refused, run_tests, wording
+from checks import DATA, OUT, rejected, run_tests, wording
 from tautline._tables import quality_text
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet
@@ -97,11 +97,11 @@ def test_criteria():
     file = OUT / "criteria.json"
     file.write_text(json.dumps(mine))
     assert tl.quality(TANGLED, criteria=file).index == result.index
-    refused(wording("did-you-mean-fem"), tl.criteria, "fam")
-    refused(wording("neither-a-file-that-can-be-read"), tl.quality, ONE, criteria="absent.json")
-    refused(wording("not-valid-json"), tl.quality, ONE, criteria="{")
-    refused(wording("cannot-be-written-as-json"), tl.quality, ONE, criteria={"name": float("nan")})
-    refused(wording("no-key-limit"), tl.quality, ONE, criteria={"limit": 1})
+    rejected(wording("did-you-mean-fem"), tl.criteria, "fam")
+    rejected(wording("neither-a-file-that-can-be-read"), tl.quality, ONE, criteria="absent.json")
+    rejected(wording("not-valid-json"), tl.quality, ONE, criteria="{")
+    rejected(wording("cannot-be-written-as-json"), tl.quality, ONE, criteria={"name": float("nan")})
+    rejected(wording("no-key-limit"), tl.quality, ONE, criteria={"limit": 1})
 
 
 def folded_tetrahedron(c: float):
@@ -134,7 +134,7 @@ def test_curved():
     graded = tl.quality(folded_tetrahedron(0.3), criteria="nastran_solids")
     assert graded.criteria["midnode_angle"]["warning"] == 1 and graded.verdict == "warning", graded.criteria
     assert list(graded.checks) == ["midnode_angle"] and tl.quality(ONE).checks == {}
-    refused(wording("there-is-no-check-jacobi"), tl.quality, ONE, checks="jacobi")
+    rejected(wording("there-is-no-check-jacobi"), tl.quality, ONE, checks="jacobi")
 
 
 def test_targets():
@@ -146,11 +146,11 @@ def test_targets():
     assert tl.quality(flat, "mu_shape").values["mu_shape"][0] > 0.5
     assert abs(tl.quality(flat, "mu_shape", reference=flat).values["mu_shape"][0]) < 1e-12
     assert abs(tl.quality(flat, "mu_shape", tensor=[[1, 1, 16, 0, 0, 0]]).values["mu_shape"][0]) < 1e-12
-    refused(wording("only-one-target"), tl.quality, ONE, size=1, reference=ONE)
-    refused(wording("size-is-not-given"), tl.quality, ONE, target="size")
-    refused(wording("target-is-tensor-but-size"), tl.quality, ONE, target="tensor", size=1)
-    refused(wording("no-array-h"), tl.quality, ONE, "mu_size", size="h")
-    refused(wording("3-rows-there-are-1-cells-and"), tl.quality, ONE, "mu_size", size=[1, 2, 3])
+    rejected(wording("only-one-target"), tl.quality, ONE, size=1, reference=ONE)
+    rejected(wording("size-is-not-given"), tl.quality, ONE, target="size")
+    rejected(wording("target-is-tensor-but-size"), tl.quality, ONE, target="tensor", size=1)
+    rejected(wording("no-array-h"), tl.quality, ONE, "mu_size", size="h")
+    rejected(wording("3-rows-there-are-1-cells-and"), tl.quality, ONE, "mu_size", size=[1, 2, 3])
 
 
 def test_inputs():
@@ -204,18 +204,18 @@ def test_metrics():
 
 
 def test_errors():
-    refused(wording("no-metric-nope"), tl.quality, ONE, "nope")
-    refused(wording("no-metric-is-chosen"), tl.quality, ONE, [])
-    refused(wording("by-its-name-not-3"), tl.quality, ONE, [3])
-    refused(wording("combination-is-sum-there-are-mean-worst"), tl.quality, ONE, combination="sum")
-    refused(wording("power-is-0"), tl.quality, ONE, power=0)
-    refused(wording("not-int"), tl.quality, 3)
-    refused("m x 3 or 4", tl.quality, (SQUARE, [[0, 1, 2, 3, 0]]))
-    refused(wording("use-the-points-0-to-9-there"), tl.quality, (TET, [[0, 1, 2, 9]]))
-    refused(wording("whole-numbers-are-expected"), tl.quality, (TET, [[0.0, 1, 2, 3]]))
-    refused(wording("there-are-no-cells-line"), tl.quality, (TET, {"lime": [[0, 1]]}))
-    refused("n x 2 or n x 3", tl.quality, (np.zeros((4, 4)), [[0, 1, 2]]))
-    refused(wording("points-are-not-an-array-of-numbers"), tl.quality, (["a", "b"], [[0, 1, 2]]))
+    rejected(wording("no-metric-nope"), tl.quality, ONE, "nope")
+    rejected(wording("no-metric-is-chosen"), tl.quality, ONE, [])
+    rejected(wording("by-its-name-not-3"), tl.quality, ONE, [3])
+    rejected(wording("combination-is-sum-there-are-mean-worst"), tl.quality, ONE, combination="sum")
+    rejected(wording("power-is-0"), tl.quality, ONE, power=0)
+    rejected(wording("not-int"), tl.quality, 3)
+    rejected("m x 3 or 4", tl.quality, (SQUARE, [[0, 1, 2, 3, 0]]))
+    rejected(wording("use-the-points-0-to-9-there"), tl.quality, (TET, [[0, 1, 2, 9]]))
+    rejected(wording("whole-numbers-are-expected"), tl.quality, (TET, [[0.0, 1, 2, 3]]))
+    rejected(wording("there-are-no-cells-line"), tl.quality, (TET, {"lime": [[0, 1]]}))
+    rejected("n x 2 or n x 3", tl.quality, (np.zeros((4, 4)), [[0, 1, 2]]))
+    rejected(wording("points-are-not-an-array-of-numbers"), tl.quality, (["a", "b"], [[0, 1, 2]]))
 
 
 def dihedral_angles(corners):

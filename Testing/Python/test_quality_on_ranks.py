@@ -11,7 +11,7 @@ from on_ranks import run_with_output
 CLOSE = 1e-12
 CASES = ("", " ids", " ghosts", " several")
 CUTS = ("slabs", "random")
-FIGURE = re.compile(r"\d+ faces have neighbours that list .*? (\d+ of the \d+) cells are treated as if listed")
+FIGURE = re.compile(r"\d+ faces have neighbors that list .*? (\d+ of the \d+) cells are treated as if listed")
 
 
 def warnings(text: str) -> list[str]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Element Quality through ParaView: properties by name, outputs by name, coloured by itself, in numbers."""
+"""Element Quality through ParaView: properties by name, outputs by name, colored by itself, in numbers."""
 
 import os
 
@@ -36,7 +36,7 @@ quality.UpdatePipeline()
 low, high = quality.CellData["mu_shape_size_orientation_nb"].GetRange()
 assert abs(low - 0.25) < 1e-6 and abs(high - 0.25) < 1e-6, (low, high)
 
-# A fresh display is coloured by the first metric, although the input has active point scalars.
+# A fresh display is colored by the first metric, although the input has active point scalars.
 display = simple.Show(quality, simple.CreateView("RenderView"))
 assert list(display.ColorArrayName) == ["CELLS", "mu_shape_size_orientation_nb"], display.ColorArrayName[:]
 

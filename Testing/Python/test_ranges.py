@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Numbers with a range: every setter of every class refuses values outside with a message and keeps the older value."""
+"""Numbers with a range: every setter of every class rejects values outside with a message and keeps the older value."""
 
 import math
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """test_read_on_ranks.py PVBATCH: MPI ranks share a file and compute what one rank does; skipped without mpirun.
 
-The points, the arrays and the messages are those of one rank, also where a rank gets no cell. An error on one rank is
+The points, the arrays and the messages equal one rank's, also where a rank gets no cell. An error on one rank is
 an error on all.
 """
 
@@ -78,7 +78,7 @@ def files(stem: str) -> list[str]:
 
 
 def run(script: str, ranks: int) -> dict:
-    """What the ranks have found; each damaged file has one message, the same whoever finds it."""
+    """The results of the ranks; each damaged file has one message, the same whoever finds it."""
     found, text = run_with_output(script, ranks, str(DATA), str(FORMATS))
     for file in damaged:
         message = f"{FORMATS / file}:{DAMAGED_LINE}: "
@@ -91,7 +91,7 @@ def run(script: str, ranks: int) -> dict:
 
 
 def check_requests(ranks: int) -> None:
-    """What each rank gets of the files, and of requests that only some of them can fulfill."""
+    """The parts of the files that each rank gets, and of requests that only some of them can fulfill."""
     result, text = run_with_output("requests_on_ranks.py", ranks, str(FORMATS), symmetric=True)
     of_ranks = result["found"]
     for name in (*cubes, *single):

@@ -5,7 +5,7 @@ import csv
 
 import numpy as np
 import tautline as tl
-from checks import OUT, points, quadratic_square, refused, run_tests, shell as run, wording
+from checks import OUT, points, quadratic_square, rejected, run_tests, shell as run, wording
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkMultiBlockDataSet, vtkPolyData
 from vtkmodules.vtkFiltersSources import vtkSphereSource
@@ -80,7 +80,7 @@ def test_data():
 
 
 def test_objective():
-    """Each objective gives its own quality; what remains is within the bound of its facets."""
+    """Each objective gives its own quality; remaining elements are within the bound of their facets."""
     mesh = slivers()
     extremes = {}
     for objective in ("angles and shape", "angles", "shape"):
@@ -92,7 +92,7 @@ def test_objective():
         remaining = result.remaining
         assert np.allclose(remaining["quality"], quality[remaining["cell"]], rtol=1e-6)
         assert (remaining["quality_bound"] >= remaining["quality"]).all() and remaining["quality_bound"].max() <= 1
-        facets = np.char.startswith(remaining["reason"], "a facet that it has")
+        facets = np.char.startswith(remaining["reason"], "one of its facets")
         at_bound = remaining["quality_bound"] <= 1.002 * remaining["quality"]
         assert (facets == at_bound).all(), objective
         extremes[objective] = sine.min(), shape.min()
@@ -145,10 +145,10 @@ def test_edge_length():
     assert own.history["insertions"][-1] < tl.improve(mesh, "aggressive").history["insertions"][-1]
     named = tl.improve(mesh, "aggressive", edge_length="field")  # 0.5 to 5.5 times the size of the mesh
     assert named.history["insertions"][-1] == 0
-    refused("edge_factor", tl.improve, mesh, edge_factor=0.5)
-    refused(wording("not-positive"), tl.improve, mesh, edge_length=np.zeros(count))
-    refused(wording("no-point-array-x"), tl.improve, mesh, edge_length="x")
-    refused("above 0", tl.improve, mesh, edge_length=0)
+    rejected("edge_factor", tl.improve, mesh, edge_factor=0.5)
+    rejected(wording("not-positive"), tl.improve, mesh, edge_length=np.zeros(count))
+    rejected(wording("no-point-array-x"), tl.improve, mesh, edge_length="x")
+    rejected("above 0", tl.improve, mesh, edge_length=0)
 
 
 def test_inputs():
@@ -158,7 +158,7 @@ def test_inputs():
     blocks = vtkMultiBlockDataSet()
     for i in range(2):
         blocks.SetBlock(i, tl.from_arrays(points(mesh), cells[region == i]))
-    refused(wording("blocks-would-come-apart"), tl.improve, blocks, boundary="sliding")
+    rejected(wording("blocks-would-come-apart"), tl.improve, blocks, boundary="sliding")
     both = tl.improve(blocks)
     assert both.elements_before == len(cells) and set(both.history["block"]) == {"block 1", "block 2"}
     assert np.isclose(both.smallest_angle, both.min_angle.min()) and wording("in-block-2") in both.summary
@@ -210,7 +210,7 @@ def test_on_surface():
 
 
 def test_metric():
-    """The worst value of a metric improves; metrics without an order or on other cells are refused."""
+    """The worst value of a metric improves; metrics without an order or on other cells are rejected."""
     mesh = slivers()
     for name, larger in (("rr", False), ("min_angle", True), ("condition_number", False), ("mu_301", False)):
         result = tl.improve(mesh, "aggressive", metric=name)
@@ -225,10 +225,10 @@ def test_metric():
     excess = total.imr.sum() - total.elements, tl.quality(mesh, ["imr"]).values["imr"].sum() - total.elements_before
     assert excess[0] < 0.6 * excess[1], excess
     assert total.smallest_angle >= total.smallest_angle_before and total.worst <= total.worst_before
-    refused(wording("no-metric-x"), tl.improve, mesh, metric="x")
-    refused(wording("neither-better-larger-nor-smaller"), tl.improve, mesh, metric="size")
-    refused(wording("depends-on-the-orientation"), tl.improve, mesh, metric="mu_shape_orientation")
-    refused(wording("either-an-objective-or-a-metric"), tl.improve, mesh, metric="imr", objective="angles")
+    rejected(wording("no-metric-x"), tl.improve, mesh, metric="x")
+    rejected(wording("neither-better-larger-nor-smaller"), tl.improve, mesh, metric="size")
+    rejected(wording("depends-on-the-orientation"), tl.improve, mesh, metric="mu_shape_orientation")
+    rejected(wording("either-an-objective-or-a-metric"), tl.improve, mesh, metric="imr", objective="angles")
     source, out = OUT / "metric.vtu", OUT / "metric_improved.vtu"
     tl.write(mesh, source)
     run("improve", source, "-o", out, "--preset", "aggressive", "--metric", "rr")
@@ -325,7 +325,7 @@ def test_mixed_blocks():
     assert both.elements == sheet().GetNumberOfCells() + both.mesh.GetBlock(1).GetNumberOfCells()
 
 
-def test_refused():
+def test_rejected():
     for text, options in (
         ("preset is 'best'", {"preset": "best"}),
         ("boundary is 'x'", {"boundary": "x"}),
@@ -342,20 +342,20 @@ def test_refused():
         ("no cell array 'x'", {"regions": "x"}),
         ("no point array 'x'", {"fixed": "x"}),
     ):
-        refused(text, tl.improve, slivers(), **options)
-    refused(wording("run-untangle-mesh-first"), tl.improve, tl.perturb(slivers(), tangle=0.05))
+        rejected(text, tl.improve, slivers(), **options)
+    rejected(wording("run-untangle-mesh-first"), tl.improve, tl.perturb(slivers(), tangle=0.05))
     for text, options in (
         ("feature_angle is 181", {"feature_angle": 181}),
         ("surface_angle is -1", {"surface_angle": -1}),
         ("surface_tolerance is 2", {"surface_tolerance": 2}),
     ):
-        refused(text, tl.improve, sheet(), **options)
+        rejected(text, tl.improve, sheet(), **options)
     quads = tl.from_arrays([[0, 0], [1, 0], [1, 1], [0, 1], [2, 0]], {
         "quadrilateral": [[0, 1, 2, 3]], "triangle": [[1, 4, 2]]})
-    refused(wording("1-quadrilaterals-improve-mesh-takes-linear-triangles"), tl.improve, quads)
-    refused(wording("run-curve-mesh-with-order-1-first"), tl.improve, quadratic_square(2))
-    refused(wording("run-untangle-mesh-first"), tl.improve, tl.perturb(sheet(), tangle=0.05))
-    refused(wording("there-is-no-such-file"), tl.improve, "absent.vtu")
+    rejected(wording("1-quadrilaterals-improve-mesh-takes-linear-triangles"), tl.improve, quads)
+    rejected(wording("run-curve-mesh-with-order-1-first"), tl.improve, quadratic_square(2))
+    rejected(wording("run-untangle-mesh-first"), tl.improve, tl.perturb(sheet(), tangle=0.05))
+    rejected(wording("there-is-no-such-file"), tl.improve, "absent.vtu")
 
 
 def test_unused_far_point():
@@ -390,12 +390,12 @@ def test_command():
     assert "Triangles: " in text and (points(tl.read(mesh)) == points(tl.improve(flat, "aggressive").mesh)).all()
     sized, plain = (tl.improve(flat, "aggressive", edge_length=length, smallest_count=0) for length in (1e-3, None))
     assert sized.history["contractions"][-1] == 0 < plain.history["contractions"][-1]  # no edge is as short
-    refused(wording("is-for-tetrahedra"), tl.improve, flat, boundary="on surface")
-    refused(wording("objective-is-for-tetrahedra"), tl.improve, flat, metric="imr")
+    rejected(wording("is-for-tetrahedra"), tl.improve, flat, boundary="on surface")
+    rejected(wording("objective-is-for-tetrahedra"), tl.improve, flat, metric="imr")
     shaped, plain = (tl.improve(flat, "aggressive", then_best_shape=yes) for yes in (True, False))
     assert shaped.smallest_angle >= plain.smallest_angle and shaped.worst <= plain.worst
     assert shaped.imr.mean() < 1 + 0.95 * (plain.imr.mean() - 1), (shaped.imr.mean(), plain.imr.mean())
-    refused(wording("objective-is-for-tetrahedra"), tl.improve, flat, objective="angles")
+    rejected(wording("objective-is-for-tetrahedra"), tl.improve, flat, objective="angles")
     run("improve", source, "-o", mesh, "--objective", "angles", "--target-angle", "40", "--preset", "aggressive")
     angles = tl.improve(source, "aggressive", objective="angles", target_angle=40)
     assert (points(tl.read(mesh)) == points(angles.mesh)).all()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Improve Mesh through ParaView: properties by name, tables, state file, colours."""
+"""Improve Mesh through ParaView: properties by name, tables, state file, colors."""
 
 import os
 from pathlib import Path

@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 import tautline as tl
 from checks import DATA, OUT, run_tests, wording
-from study_checks import Studies, refused_command
+from study_checks import Studies, rejected_command
 from tautline import __main__ as command_line
 from tautline.studies import (
     _intersections,
@@ -43,7 +43,7 @@ def test_figures():
     studies.run("figures")
     studies.check("figures", 18, PICTURES, {}, printed())
     for row in studies.rows("figures", "findings"):
-        # The text's least value of RR, 0.5, is not that of its formula, and small sets have fewer shapes and elements.
+        # The text's smallest value of RR, 0.5, is not its formula's, and small sets have fewer shapes and elements.
         expected = "does not hold" if row["source"] == "2.4" else "holds"
         small = row["source"] in ("Figure 3.12", "Figure 5.2", "Figure 5.4")
         assert row["verdict"] == ("too small to decide" if small else expected), row
@@ -74,7 +74,7 @@ def test_intersections():
 
 
 def test_local():
-    """The local condition number is that of the five-point formula: cot^2(pi h / 2) at aspect ratio 1."""
+    """The local condition number matches the five-point formula: cot^2(pi h / 2) at aspect ratio 1."""
     studies.run("peridynamics_local")
     tables = {"by_size": 5, "by_angle": 3, "times": 4}
     studies.check("peridynamics_local", 11, ("peridynamics_local",), tables, stated())
@@ -121,7 +121,7 @@ def test_rank_scaling():
     if not shutil.which("mpirun") or not shutil.which("pvbatch"):
         print("not run, without mpirun or pvbatch")
         return
-    refused_command("increasing numbers", "study", "rank_scaling", "--small", "--ranks", "2", "1")
+    rejected_command("increasing numbers", "study", "rank_scaling", "--small", "--ranks", "2", "1")
     studies.run("rank_scaling", "--ranks", "1", "2")
     studies.check("rank_scaling", 3, ("rank_scaling",), {"seconds": 3})
     _, (found,), _ = studies.calls["rank_scaling"][0]
@@ -133,7 +133,7 @@ def test_rank_scaling():
 
 
 def test_contours():
-    """The position of the best value is that of the equilateral triangle, whichever side of the base it is on."""
+    """The best position makes the triangle equilateral, whichever side of the base it is on."""
     field = tl.metric_field(("imr",), vertices=figures.BASE_2_1, bounds=(-2, 0, -0.5, 1.5), dimensions=(81, 81))
     value, x, y = figures.best_position(field, (-2, 0, -0.5, 1.5), "imr")
     assert abs(value - 1) < 1e-3 and abs(x - math.sqrt(3) / 2) < 0.03 and abs(y - 0.5) < 0.03
@@ -191,7 +191,7 @@ def test_report():
         assert code == 0 and "peridynamics_local" in page
     finally:
         peridynamics_local.main = before
-    refused_command("there is no study 'nothing'", "study", "all", "--studies", "nothing", "--out", str(OUT / "none"))
+    rejected_command("there is no study 'nothing'", "study", "all", "--studies", "nothing", "--out", str(OUT / "none"))
 
 
 def broken(_):

@@ -139,7 +139,7 @@ class Digest:
 
 
 def differences(first, second):
-    """What differs between the entries of two digests: a list of sentences."""
+    """The differences between the entries of two digests: a list of sentences."""
     found = []
     for kind in ("value", "text"):
         ours, theirs = ([entry for entry in entries if entry[1] == kind] for entries in (first, second))
@@ -250,7 +250,7 @@ def outputs(name, mesh=None, array=None, **properties):
 
 
 def all_files(**options):
-    """What the readers make of the files of Data/."""
+    """The results of the readers for the files of Data/."""
     endings = (".1.node", ".1.ele", ".smesh", ".poly", ".msh", ".mesh", ".sol", ".off")
     files = sorted(file for file in DATA.iterdir() if file.name.endswith(endings))
     assert len(files) >= 14, files
@@ -313,7 +313,7 @@ def each(name, values, operation):
     return {name.format(value): functools.partial(operation, value) for value in values}
 
 
-# What is done, by name, with a number of threads. Filters without threads are run twice, too.
+# The operations, by name, with a number of threads. Filters without threads are also run twice.
 OPERATIONS = {
     # readers, writers, domains, meshers
     "read": lambda _: all_files(),
@@ -497,7 +497,7 @@ def test_threads(names):
 
 
 def compare(file, digests, only):
-    """The number of operations whose digests are not those of the file."""
+    """The number of operations whose digests differ from the file."""
     known = json.loads(Path(file).read_text())
     known = {name: entries for name, entries in known.items() if only in name}
     wrong = 0

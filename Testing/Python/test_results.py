@@ -11,7 +11,7 @@ from dataclasses import fields, is_dataclass
 
 import numpy as np
 import tautline as tl
-from checks import DATA, OUT, refused, run_tests, square, wording
+from checks import DATA, OUT, rejected, run_tests, square, wording
 from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet
 
 TANGLED, PLATE = DATA / "bracket-tangled.vtu", DATA / "plate.vtu"
@@ -89,12 +89,12 @@ def test_equality():
     assert tl.quality(PLATE) != tl.perturb(PLATE) and tl.quality(PLATE) != 3
     nan = tl.quality(([[0, 0], [1, 0], [2, 0]], [[0, 1, 2]]))  # degenerate: nothing is measured
     assert np.isnan(nan.statistics["imr"]["worst"]) and nan == copy.deepcopy(nan)
-    refused_hash = False
+    rejected_hash = False
     try:
         hash(nan)
     except TypeError:
-        refused_hash = True
-    assert refused_hash
+        rejected_hash = True
+    assert rejected_hash
 
 
 def test_help():
@@ -118,13 +118,13 @@ def test_tables():
     rows = (OUT / "result.csv").read_text().splitlines()
     assert rows[0].split(",") == list(result.history) and len(rows) == len(result.history["objective"]) + 1
     assert tl.quality(PLATE, ["imr", "rr"]).table()[1]["metric"] == "rr"
-    refused(wording("has-no-table"), tl.perturb(PLATE).to_csv, OUT / "none.csv")
+    rejected(wording("has-no-table"), tl.perturb(PLATE).to_csv, OUT / "none.csv")
     for result in some_results():
         json.loads(result.to_json())
     try:
         import pandas
     except ImportError:
-        refused(wording("pandas-is-not-installed"), result.to_pandas)
+        rejected(wording("pandas-is-not-installed"), result.to_pandas)
         return
     frame = tl.optimize(PLATE).to_pandas()
     assert isinstance(frame, pandas.DataFrame) and list(frame["iteration"]) == list(range(len(frame)))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A ParaView state runs without its window: the same numbers as those of the functions, other meshes, errors."""
+"""A ParaView state runs without its window: the same numbers as from the functions, other meshes, errors."""
 
 import json
 import os
@@ -7,7 +7,7 @@ import shutil
 from pathlib import Path
 
 import tautline as tl
-from checks import DATA, OUT, points, refused, run_tests, shell, wording
+from checks import DATA, OUT, points, rejected, run_tests, shell, wording
 from tautline._choices import OPTIMIZE_PRESETS as PRESETS
 
 os.environ["PV_PLUGIN_PATH"] = str(Path(os.environ["TAUTLINE_PLUGIN"]).parent.parent)
@@ -22,15 +22,15 @@ TANGLED = DATA / "bracket-tangled.vtu"
 
 
 def test_missing_mesh():
-    refused(wording("the-file-that-it-reads-is-not"), tl.run_state, STATE)
+    rejected(wording("the-file-that-it-reads-is-not"), tl.run_state, STATE)
 
 
 def test_same_numbers():
     """The chain of the tutorial, its mesh beside the state."""
     shutil.copy(TANGLED, FOLDER)
     result = tl.run_state(STATE, filter="Optimize Mesh")
-    refused(wording("the-state-has-several-ends-choose-a"), tl.run_state, STATE)
-    refused(wording("no-filter-optimise-there-are"), tl.run_state, STATE, filter="Optimise")
+    rejected(wording("the-state-has-several-ends-choose-a"), tl.run_state, STATE)
+    rejected(wording("no-filter-optimise-there-are"), tl.run_state, STATE, filter="Optimise")
     (FOLDER / TANGLED.name).unlink()
     labels = [each["label"] for each in result.filters]
     assert wording("untangle-mesh") in labels and wording("optimize-mesh") in labels, labels
@@ -51,17 +51,17 @@ def test_other_mesh():
 
 
 def test_errors():
-    refused(wording("there-is-no-such-file"), tl.run_state, FOLDER / "absent.pvsm")
+    rejected(wording("there-is-no-such-file"), tl.run_state, FOLDER / "absent.pvsm")
     (FOLDER / "text.pvsm").write_text("no state")
-    refused(wording("not-a-state-of-paraview"), tl.run_state, FOLDER / "text.pvsm")
+    rejected(wording("not-a-state-of-paraview"), tl.run_state, FOLDER / "text.pvsm")
     (FOLDER / "other.pvsm").write_text("<a/>")
-    refused(wording("it-has-no-servermanagerstate"), tl.run_state, FOLDER / "other.pvsm")
+    rejected(wording("it-has-no-servermanagerstate"), tl.run_state, FOLDER / "other.pvsm")
     (FOLDER / "broken.vtu").write_text("no mesh")
-    refused("", tl.run_state, STATE, mesh=FOLDER / "broken.vtu", filter="Optimize Mesh")
+    rejected("", tl.run_state, STATE, mesh=FOLDER / "broken.vtu", filter="Optimize Mesh")
     assert wording("mesh-is-for-states") in shell("run", STATE.with_suffix(".toml"), "--mesh", TANGLED, code=1)
     path, os.environ["PATH"] = os.environ["PATH"], str(FOLDER)
     try:
-        refused(wording("needs-pvpython-which-is-not-on"), tl.run_state, STATE, mesh=TANGLED, filter="Optimize Mesh")
+        rejected(wording("needs-pvpython-which-is-not-on"), tl.run_state, STATE, mesh=TANGLED, filter="Optimize Mesh")
     finally:
         os.environ["PATH"] = path
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import tautline as tl
-from checks import OUT, points, refused, run_tests, shell, square, wording
+from checks import OUT, points, rejected, run_tests, shell, square, wording
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes, vtkMultiBlockDataSet
 from vtkmodules.vtkFiltersCore import vtkAppendFilter
@@ -131,10 +131,10 @@ def test_pvtu() -> None:
     assert wording("27-coincident-points") in shell("solve", pvtu_file(parts(mesh)))
     piece = OUT / "seams_2.vtu"
     piece.write_bytes(piece.read_bytes()[:2000])
-    refused("seams", tl.read, file)
+    rejected("seams", tl.read, file)
     piece.unlink()
-    refused("seams_2.vtu", tl.read, file)
-    refused(wording("no-writer-for-pvtu"), tl.write, mesh, file)
+    rejected("seams_2.vtu", tl.read, file)
+    rejected(wording("no-writer-for-pvtu"), tl.write, mesh, file)
 
 
 def test_blocks() -> None:
@@ -146,7 +146,7 @@ def test_blocks() -> None:
     result = tl.solve(blocks, source=50, relative_tolerance=TIGHT)
     assert result.unknowns == whole.unknowns and wording("one-mesh") in result.summary
     assert abs(result.solution.max() / whole.solution.max() - 1) < 1e-10
-    refused(wording("merge-blocks"), tl.optimize, blocks, boundary="free")
+    rejected(wording("merge-blocks"), tl.optimize, blocks, boundary="free")
 
 
 def test_motion() -> None:

@@ -5,7 +5,7 @@ import csv
 
 import numpy as np
 import tautline as tl
-from checks import OUT, refused, run_tests, shell, wording
+from checks import OUT, rejected, run_tests, shell, wording
 from study_checks import Studies
 from tautline.studies import _silhouettes, shapes
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -40,15 +40,15 @@ def test_silhouette():
     assert all((a == b).all() for a, b in zip(images, again))
     shape = tl.silhouette(images[2], spacing=15)
     assert shape.mesh.GetNumberOfCells() == shape.mesh.GetNumberOfPoints() - 2 > 6
-    # The centre of mass of the area is the mean of the pixels.
+    # The center of mass of the area is the mean of the pixels.
     y, x = np.nonzero(images[2])
     assert np.allclose(shape.centre, [x.mean(), y.mean()], atol=0.15), (shape.centre, x.mean(), y.mean())
     assert shape.components == 1 and shape.holes == 0
-    refused(wording("one-value"), tl.silhouette, np.ones((9, 9)))
-    refused("spacing", tl.silhouette, images[0], 0)
-    refused(wording("no-such-file"), tl.silhouette, "nowhere.png")
-    refused("axes", tl.silhouette, np.ones(9))
-    refused("foreground", tl.silhouette, images[0], foreground="pink")
+    rejected(wording("one-value"), tl.silhouette, np.ones((9, 9)))
+    rejected("spacing", tl.silhouette, images[0], 0)
+    rejected(wording("no-such-file"), tl.silhouette, "nowhere.png")
+    rejected("axes", tl.silhouette, np.ones(9))
+    rejected("foreground", tl.silhouette, images[0], foreground="pink")
 
 
 def test_match():
@@ -67,9 +67,9 @@ def test_match():
     assert plain.energy < like.energy
     one, two = (tl.match(images[2], images[3], threads=threads, grid=(12, 12)) for threads in (1, 2))
     assert one.energy == two.energy and (one.points == two.points).all()
-    refused(wording("argument-of-match-c"), tl.match, images[2], images[3], c=1)
-    refused(wording("a-is-nan"), tl.match, images[2], images[3], a=float("nan"))
-    refused(wording("too-small"), tl.match, images[2], images[3], grid=(1, 1))
+    rejected(wording("argument-of-match-c"), tl.match, images[2], images[3], c=1)
+    rejected(wording("a-is-nan"), tl.match, images[2], images[3], a=float("nan"))
+    rejected(wording("too-small"), tl.match, images[2], images[3], grid=(1, 1))
 
 
 def test_retrieval():
@@ -94,11 +94,11 @@ def test_retrieval():
     passed = tl.retrieval(images, labels, best=2, neighbors=3)
     assert passed.rate >= 80 and wording("after-diffusion") in passed.summary, passed.summary
     assert passed.distances.min() == 0 and passed.distances.max() <= 1
-    refused("shortlist", tl.retrieval, images, labels, shortlist=-1)
-    refused("neighbors", tl.retrieval, images, labels, neighbors=float("nan"))
-    refused("sheet_size", tl.retrieval, images, labels, sheet_size=0)
-    refused(wording("labels-for"), tl.retrieval, images, labels[:3])
-    refused("setting", tl.retrieval, images, labels, setting="best")
+    rejected("shortlist", tl.retrieval, images, labels, shortlist=-1)
+    rejected("neighbors", tl.retrieval, images, labels, neighbors=float("nan"))
+    rejected("sheet_size", tl.retrieval, images, labels, sheet_size=0)
+    rejected(wording("labels-for"), tl.retrieval, images, labels[:3])
+    rejected("setting", tl.retrieval, images, labels, setting="best")
 
 
 def test_commands():

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What all commands share: help with an example that runs, --json, --quiet, pipes, the progress bar, exit codes."""
+"""Common features of all commands: help with an example that runs, --json, --quiet, pipes, the progress bar, exit
+codes."""
 
 import json
 import os
@@ -30,7 +31,7 @@ def piped(*commands, code: int = 0):
 
 
 def on_terminal(*arguments) -> str:
-    """What a command prints to stderr where that is a terminal."""
+    """The output of a command on stderr if that is a terminal."""
     main, other = pty.openpty()
     line = [sys.executable, "-m", "tautline", *map(str, arguments)]
     child = subprocess.Popen(line, cwd=FOLDER, stdout=subprocess.PIPE, stderr=other)
@@ -146,7 +147,7 @@ def test_progress_bar():
     assert seen.endswith("\r\x1b[K"), repr(seen[-80:])
     assert on_terminal(*work, "--quiet") == ""
     assert piped(work)[1] == ""
-    # In Python: nothing where stderr is no terminal; other values are refused.
+    # In Python: nothing where stderr is no terminal; other values are rejected.
     assert tl.perturb(FOLDER / "plate.vtu", progress=True) == tl.perturb(FOLDER / "plate.vtu")
     assert tl.perturb(FOLDER / "plate.vtu", progress=False).moved > 0
     try:

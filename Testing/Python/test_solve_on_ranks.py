@@ -2,7 +2,7 @@
 """test_solve_on_ranks.py PVBATCH: any number of pieces on 1 to 4 MPI ranks gives the same numbers; needs mpirun.
 
 Solve PDE, Condition Estimator and Solver Study, on pieces with and without ghost cells, cut in three ways, and with the
-mesh divided anew among the ranks.
+mesh redistributed among the ranks.
 """
 
 import numpy as np

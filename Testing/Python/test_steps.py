@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 
 import tautline as tl
-from checks import DATA, OUT, SKIPPED, points, refused, run_tests, shell, wording
+from checks import DATA, OUT, SKIPPED, points, rejected, run_tests, shell, wording
 
 FOLDER = OUT / "steps"
 FOLDER.mkdir(exist_ok=True)
@@ -44,10 +44,10 @@ def with_steps(text: str) -> Path:
 
 
 def wrong(text: str, step: str, *before: str) -> None:
-    """A step that is wrong after `read`: refused before anything is written."""
+    """A step that is wrong after `read`: rejected before anything is written."""
     (FOLDER / "better.vtu").unlink(missing_ok=True)
     head = f'[[step]]\ndo = "read"\nfile = "{DATA / "plate.vtu"}"\n[[step]]\ndo = "write"\nfile = "better.vtu"\n'
-    refused(text, tl.run_steps, with_steps(head + "[[step]]\n" + step))
+    rejected(text, tl.run_steps, with_steps(head + "[[step]]\n" + step))
     assert not (FOLDER / "better.vtu").exists(), "a step was run before all were checked"
 
 
@@ -95,12 +95,12 @@ def test_checks():
     wrong("no writer for '.xyz'", 'do = "write"\nfile = "a.xyz"')
     wrong("there is no directory", 'do = "write"\nfile = "absent/a.vtu"')
     wrong("steps.toml: ", "do = ")
-    refused(wording("there-are-no-steps"), tl.run_steps, with_steps(""))
-    refused(wording("there-is-no-key-of-the-file"), tl.run_steps, {"steps": []})
-    refused(wording("the-first-step-has-to-be-read"), tl.run_steps, {"step": [{"do": "untangle"}]})
-    refused(wording("there-is-no-such-file"), tl.run_steps, FOLDER / "absent.toml")
-    # What only the run can find has the number of the step, too.
-    refused(wording("step-2-warp-nothing-is-given"), tl.run_steps,
+    rejected(wording("there-are-no-steps"), tl.run_steps, with_steps(""))
+    rejected(wording("there-is-no-key-of-the-file"), tl.run_steps, {"steps": []})
+    rejected(wording("the-first-step-has-to-be-read"), tl.run_steps, {"step": [{"do": "untangle"}]})
+    rejected(wording("there-is-no-such-file"), tl.run_steps, FOLDER / "absent.toml")
+    # Errors that only the run can find also have the number of the step.
+    rejected(wording("step-2-warp-nothing-is-given"), tl.run_steps,
             {"step": [{"do": "read", "file": str(DATA / "plate.vtu")}, {"do": "warp"}]})  # fmt: skip
     # Lists are taken where a function takes them.
     read = {"do": "read", "file": str(DATA / "plate.vtu")}

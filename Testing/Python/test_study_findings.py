@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What all studies share: verdicts, findings of several seeds, results that are kept, and the committed findings."""
+"""Common parts of all studies: verdicts, findings of several seeds, results that are kept, and the committed
+findings."""
 
 import math
 from argparse import Namespace
@@ -30,7 +31,7 @@ def test_verdicts():
         assert is_open(_verdicts.less(missing, missing, 0.1)) and is_open(_verdicts.gain(missing, 0.5))
         assert is_open(_verdicts.close(missing, 1.0, 0.1))
     assert _verdicts.gain(0.4, 0.5) and _verdicts.gain(0.7, 0.5) and not _verdicts.gain(0.2, 0.5)
-    # Of a large gain, what remains decides: 2 times faster is not 33 times faster.
+    # For a large gain, the remainder decides: 2 times faster is not 33 times faster.
     assert not _verdicts.gain(0.5, 0.97) and not _verdicts.gain(0.9, 0.97) and _verdicts.gain(0.95, 0.97)
     assert _verdicts.gain(0.993, 0.97)
     assert _verdicts.same_count(10, 13) and not _verdicts.same_count(0, 1) and not _verdicts.same_count(3, 0)

@@ -11,7 +11,7 @@ from importlib.util import find_spec
 
 import numpy as np
 import tautline as tl
-from checks import DATA, OUT, points, refused, run_tests, shell, wording
+from checks import DATA, OUT, points, rejected, run_tests, shell, wording
 from tautline import _io
 from tautline._template import _nastran, _value
 
@@ -228,7 +228,7 @@ FILES = {
     "v2.msh": MSH2, "v41.msh": MSH41, "a.mesh": MEDIT, "m.mesh": MFEM, "a.su2": SU2, "a.off": OFF, "a.inp": ABAQUS,
     "a.bdf": NASTRAN, "a.unv": UNV,
 }  # fmt: skip
-#: What stands where the coordinates of the inner point were: patterns, with a group for each.
+#: The text in place of the coordinates of the inner point: patterns, with a group for each.
 INNER = {
     "v2.msh": r"\n5 (\S+) (\S+) 0\n\$EndNodes", "v41.msh": r"\n5\n(\S+) (\S+) 0\n", "a.mesh": r"\n(\S+) (\S+) 0\nTri",
     "m.mesh": r"\n(\S+) (\S+)\n$",
@@ -343,14 +343,14 @@ def test_other_systems():
     source.write_text(NASTRAN.replace("ENDDATA", system + grid + cell + "ENDDATA"))
     mesh = tl.read(source)
     assert points(mesh)[:, 0].max() == 5, points(mesh)
-    refused(wording("in-the-basic-system"), tl.write, mesh, target, template=source)
+    rejected(wording("in-the-basic-system"), tl.write, mesh, target, template=source)
     source, target = FOLDER / "moved.inp", FOLDER / "out-moved.inp"
     part = "*Part, name=A\n*Node\n1, 0., 0., 0.\n2, 1., 0., 0.\n3, 1., 1., 0.\n*Element, type=CPS3\n1, 1, 2, 3\n"
     part += "*End Part\n"
     placed = [f"*Instance, name=A-{i}, part=A\n {i}., 0., 0.\n*End Instance\n" for i in (1, 2)]
     for instances in (placed[0], "".join(placed)):
         source.write_text(f"*Heading\n{part}*Assembly, name=Assembly\n{instances}*End Assembly\n")
-        refused(wording("without-parts-and-assemblies"), tl.write, tl.read(source), target, template=source)
+        rejected(wording("without-parts-and-assemblies"), tl.write, tl.read(source), target, template=source)
 
 
 def test_parametric():
@@ -371,9 +371,9 @@ def test_parametric():
     source.write_bytes(content + b"\n$EndElements\n")
     mesh = tl.read(source)
     assert np.array_equal(points(mesh)[3:], [[0, 1, 0], [0.4, 0.5, 0]]) and mesh.GetNumberOfCells() == 1
-    refused(wording("parametric-nodes"), tl.write, mesh, target, template=source)
+    rejected(wording("parametric-nodes"), tl.write, mesh, target, template=source)
     source.write_text(text.replace("40 0 1 0 2 6 .25 .75", "40 0 1 0 2 6 .25"))
-    refused("parametric.msh:", tl.read, source)
+    rejected("parametric.msh:", tl.read, source)
 
 
 def meshb(version: int, order: str) -> bytes:
@@ -415,32 +415,32 @@ def test_meshb():
             real = struct.Struct(f"{order}2{'f' if version == 1 else 'd'}")
             assert target.read_bytes() == content.replace(real.pack(0.375, 0.5), real.pack(1 / 3, 2 / 3)) != content
     mesh.GetPoints().SetPoint(4, 0.4, 0.5, 0.1)
-    refused(wording("leaves-the-plane"), tl.write, mesh, target, template=source)
+    rejected(wording("leaves-the-plane"), tl.write, mesh, target, template=source)
     mesh.GetPoints().SetPoint(4, 1e300, 0.5, 0)
     source.write_bytes(meshb(1, "<"))
-    refused(wording("too-large-for-its-numbers"), tl.write, mesh, target, template=source)
+    rejected(wording("too-large-for-its-numbers"), tl.write, mesh, target, template=source)
 
 
-def test_refused():
-    """What is not the file that was read is refused, and nothing is written."""
-    source, target = FOLDER / "v2.msh", FOLDER / "refused.msh"
+def test_rejected():
+    """A file other than the one that was read is rejected, and nothing is written."""
+    source, target = FOLDER / "v2.msh", FOLDER / "rejected.msh"
     source.write_text(MSH2)
     mesh = moved(source)
     target.unlink(missing_ok=True)
-    refused(wording("of-another-format"), tl.write, mesh, target, template=DATA / "bracket.vtu")
-    refused(wording("no-other-options"), tl.write, mesh, target, template=source, binary=True)
-    refused("v2.msh", tl.write, tl.domain("square"), target, template=source)
+    rejected(wording("of-another-format"), tl.write, mesh, target, template=DATA / "bracket.vtu")
+    rejected(wording("no-other-options"), tl.write, mesh, target, template=source, binary=True)
+    rejected("v2.msh", tl.write, tl.domain("square"), target, template=source)
     mesh.GetPoints().SetPoint(4, np.nan, 0, 0)
-    refused(wording("coordinate-is-not-finite"), tl.write, mesh, target, template=source)
+    rejected(wording("coordinate-is-not-finite"), tl.write, mesh, target, template=source)
     source.write_text(MSH2.replace("8 2 2 2 1 40 1 5", "8 2 2 2 1 1 5 40"))
-    refused(wording("has-other-cells"), tl.write, moved(source), target, template=FOLDER / "v41.msh")
-    refused(wording("cannot-be-templates"), tl.write, mesh, FOLDER / "a.ply", template=FOLDER / "b.ply")
+    rejected(wording("has-other-cells"), tl.write, moved(source), target, template=FOLDER / "v41.msh")
+    rejected(wording("cannot-be-templates"), tl.write, mesh, FOLDER / "a.ply", template=FOLDER / "b.ply")
     assert not target.exists()
     flat = FOLDER / "flat.su2"
     flat.write_text(SU2)
     mesh = moved(flat)
     mesh.GetPoints().SetPoint(4, 0.4, 0.5, 0.1)
-    refused(wording("leaves-the-plane"), tl.write, mesh, FOLDER / "refused.su2", template=flat)
+    rejected(wording("leaves-the-plane"), tl.write, mesh, FOLDER / "rejected.su2", template=flat)
 
 
 def test_vtk():
@@ -479,13 +479,13 @@ def test_without_meshio():
     try:
         tl.write(tl.optimize(source), target)
         assert len(target.read_text().splitlines()) == len(source.read_text().splitlines())
-        refused(wording("points-are-those-of-parts"), tl.write, tl.untangle(DATA / "beam.inp"), target)
+        rejected(wording("points-are-those-of-parts"), tl.write, tl.untangle(DATA / "beam.inp"), target)
     finally:
         _io.check_installed = check
 
 
 def test_losses():
-    """Improve changes cells: the file is written anew, and what it lacks is listed."""
+    """Improve changes cells: the file is written without the template, and the missing parts are listed."""
     source = FOLDER / "improve.msh"
     source.write_text(MSH2)
     command = [sys.executable, "-m", "tautline", "improve", source, "-o", FOLDER / "improved.msh"]

@@ -5,7 +5,7 @@ import csv
 
 import numpy as np
 import tautline as tl
-from checks import DATA, OUT, points, refused, run_tests, shell, square, wording
+from checks import DATA, OUT, points, rejected, run_tests, shell, square, wording
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet
 
@@ -61,7 +61,7 @@ def test_options():
     corner = [0, 7, 56, 63]
     assert np.allclose(near.point_data["u"][corner], source.GetPointData().GetArray("u").GetTuple1(0) + np.array(
         [0, np.sin(3), 1, 1 + np.sin(3)]))  # fmt: skip
-    # What the target has is replaced, or not.
+    # Arrays that the target has are replaced, or not.
     again = tl.transfer(chosen, source, replace_arrays=False)
     assert (again.point_data["u"] == chosen.point_data["u"]).all() and "c" in again.cell_data
     one, many = (tl.transfer(square(7), source, threads=threads) for threads in (1, 4))
@@ -90,20 +90,20 @@ def test_meshes():
     assert free.total_error > 1e-3 and free.largest_excess == 0
 
 
-def test_refused():
+def test_rejected():
     source = with_fields(square(5))
-    refused("nothing", tl.transfer, square(4), source, point_arrays=["nothing"])
-    refused("point_arrays", tl.transfer, square(4), source, point_arrays=[])
-    refused("cell_order", tl.transfer, square(4), source, cell_order="cubic")
-    refused("method", tl.transfer, square(4), source, "guess")
+    rejected("nothing", tl.transfer, square(4), source, point_arrays=["nothing"])
+    rejected("point_arrays", tl.transfer, square(4), source, point_arrays=[])
+    rejected("cell_order", tl.transfer, square(4), source, cell_order="cubic")
+    rejected("method", tl.transfer, square(4), source, "guess")
     far = square(4)
     points(far)[:] += 3
-    refused(wording("the-meshes-do-not-overlap"), tl.transfer, far, source)
-    refused(wording("the-source-is-a-volume"), tl.transfer, square(4), BRACKET)
-    refused("order 1", tl.transfer, square(4), tl.curve(square(2), 2))
+    rejected(wording("the-meshes-do-not-overlap"), tl.transfer, far, source)
+    rejected(wording("the-source-is-a-volume"), tl.transfer, square(4), BRACKET)
+    rejected("order 1", tl.transfer, square(4), tl.curve(square(2), 2))
     odd = with_fields(square(5))
     odd.GetPointData().GetArray("u").SetTuple1(2, np.inf)
-    refused(wording("1-values-of-the-point-array-u"), tl.transfer, square(4), odd, point_arrays=["u"])
+    rejected(wording("1-values-of-the-point-array-u"), tl.transfer, square(4), odd, point_arrays=["u"])
 
 
 def test_shell():

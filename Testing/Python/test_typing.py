@@ -20,7 +20,7 @@ worst: float = better.statistics["imr"]["worst_after"]
 tl.warp("part.vtu", np.zeros((3, 3)), "femwarp", fixed=np.zeros(3), preconditioner="boomeramg")
 tl.vtkMeshWarp().SetAmount(1)
 """
-#: A line that is wrong and what mypy says of it.
+#: A line that is wrong and mypy's message.
 WRONG = {
     'tl.optimize("part.vtu", preset="best shpae")': 'Argument "preset" to "optimize" has incompatible type',
     'tl.untangle("part.vtu", "thorugh")': 'Argument 2 to "untangle" has incompatible type',
@@ -56,7 +56,7 @@ def test_users() -> None:
 
 
 def check_classes() -> None:
-    """The list of the classes for type checkers is that of the classes that were built."""
+    """The list of the classes for type checkers equals the classes that were built."""
     text = (PACKAGE / "_classes.py").read_text()
     listed = {line.split(" as ")[1] for line in text.splitlines() if line.startswith("from ._vtk")}
     built = {*_vtk.CLASSES, *_vtk.LATER}

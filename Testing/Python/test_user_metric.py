@@ -8,7 +8,7 @@ import sys
 
 import numpy as np
 import tautline as tl
-from checks import DATA, OUT, refused, run_tests, wording
+from checks import DATA, OUT, rejected, run_tests, wording
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 LIBRARY = sys.argv[1]
@@ -35,7 +35,7 @@ def test_register():
 
     number = tl.register_metric("longest", function, label="Longest distance", formula="max |p - q|", unit="length",
                                 acceptable=(0, 0.3))  # fmt: skip
-    assert number == 300445941, "the number is that of the name, in every session"
+    assert number == 300445941, "the number follows from the name, in every session"
     # Tried on two cells of each type as they are, and turned.
     assert [(name, shape) for name, shape in calls[::2]] == [
         ("triangle", (2, 3, 3)), ("quadrilateral", (2, 4, 3)), ("tetrahedron", (2, 4, 3)), ("hexahedron", (2, 8, 3)),
@@ -115,10 +115,10 @@ def test_optimized():
         assert np.isclose(automatic.history["objective"][-1], first[1], rtol=1e-6)
         both = tl.optimize(mesh, "custom", objectives=["my_shape", "size"], scalarization="equal sum", **options)
         assert both.history["objective"][-1] < both.history["objective"][0]
-    for refusal in (dict(optimizer="local newton"), dict(optimizer="newton-cg"), dict(improve_worst=0.01),
+    for rejection in (dict(optimizer="local newton"), dict(optimizer="newton-cg"), dict(improve_worst=0.01),
                     dict(limits=0.1)):
-        refused(wording("without-derivatives-of-its-own"), tl.optimize, mesh, "custom", objectives="my_shape",
-                **refusal)
+        rejected(wording("without-derivatives-of-its-own"), tl.optimize, mesh, "custom", objectives="my_shape",
+                **rejection)
     tl.unregister_metric("my_shape")
 
 
@@ -131,8 +131,8 @@ def test_replaced_and_removed():
                        np.zeros(len(corners)))  # fmt: skip
     assert (tl.quality(PLATE, "constant").values["constant"] == 0).all(), "what is not finite becomes 0"
     tl.unregister_metric("constant")
-    refused(wording("there-is-no-metric-constant"), tl.quality, PLATE, "constant")
-    refused(wording("no-metric-constant-was-registered"), tl.unregister_metric, "constant")
+    rejected(wording("there-is-no-metric-constant"), tl.quality, PLATE, "constant")
+    rejected(wording("no-metric-constant-was-registered"), tl.unregister_metric, "constant")
 
 
 def test_only_some_cells():
@@ -141,34 +141,34 @@ def test_only_some_cells():
     assert (tl.quality(BRACKET, "flat_only").values["flat_only"] == 0).all()
 
 
-def test_refused():
+def test_rejected():
     def fails(corners, cell_type):
         raise KeyError("no such thing")
 
     ones = lambda corners, cell: np.ones(len(corners))  # noqa: E731
-    refused(wording("there-is-a-metric-imr"), tl.register_metric, "imr", ones)
-    refused(wording("cannot-be-the-name"), tl.register_metric, "My metric", ones)
-    refused(wording("a-function-is-expected"), tl.register_metric, "mine", 3)
-    refused(wording("keyerror-no-such-thing"), tl.register_metric, "mine", fails)
-    refused(wording("values-of-shape-3-2-is-expected"), tl.register_metric, "mine", lambda p, cell: np.ones(3))
-    refused(wording("could-not-convert"), tl.register_metric, "mine", lambda p, cell: ["a"] * len(p))
-    refused(wording("not-finite-on-a-valid"), tl.register_metric, "mine", lambda p, cell: np.full(len(p), np.inf))
-    refused(wording("did-you-mean-triangle"), tl.register_metric, "mine", ones, cell_types=["triangel"])
-    refused(wording("did-you-mean-larger-is-better"), tl.register_metric, "mine", ones, direction="larger is beter")
-    refused(wording("depends-on-the-scale"), tl.register_metric, "mine", longest, scale_invariant=True)
-    refused(wording("set-rotation-invariant-to-false"), tl.register_metric, "mine", lambda p, cell: p[:, 0, 0])
+    rejected(wording("there-is-a-metric-imr"), tl.register_metric, "imr", ones)
+    rejected(wording("cannot-be-the-name"), tl.register_metric, "My metric", ones)
+    rejected(wording("a-function-is-expected"), tl.register_metric, "mine", 3)
+    rejected(wording("keyerror-no-such-thing"), tl.register_metric, "mine", fails)
+    rejected(wording("values-of-shape-3-2-is-expected"), tl.register_metric, "mine", lambda p, cell: np.ones(3))
+    rejected(wording("could-not-convert"), tl.register_metric, "mine", lambda p, cell: ["a"] * len(p))
+    rejected(wording("not-finite-on-a-valid"), tl.register_metric, "mine", lambda p, cell: np.full(len(p), np.inf))
+    rejected(wording("did-you-mean-triangle"), tl.register_metric, "mine", ones, cell_types=["triangel"])
+    rejected(wording("did-you-mean-larger-is-better"), tl.register_metric, "mine", ones, direction="larger is beter")
+    rejected(wording("depends-on-the-scale"), tl.register_metric, "mine", longest, scale_invariant=True)
+    rejected(wording("set-rotation-invariant-to-false"), tl.register_metric, "mine", lambda p, cell: p[:, 0, 0])
     assert not any(facts["name"] == "mine" for facts in tl.metrics())
     # A function that fails later: an error of the filter, and the next mesh is measured.
     wrong = {"now": False}
     tl.register_metric("sometimes", lambda p, cell: p[:, 0, 5] if wrong["now"] else np.ones(len(p)))
     wrong["now"] = True
-    refused(wording("the-metric-sometimes-failed-on"), tl.quality, PLATE, "sometimes")
+    rejected(wording("the-metric-sometimes-failed-on"), tl.quality, PLATE, "sometimes")
     wrong["now"] = False
     assert (tl.quality(PLATE, "sometimes").values["sometimes"] == 1).all()
     # Improve Mesh takes derivatives of each metric.
     if hasattr(tl, "improve"):
-        refused(wording("has-no-derivatives"), tl.improve, BRACKET, metric="sometimes")
-    refused(wording("cannot-be"), tl.load_metrics, "/nonexistent.so")
+        rejected(wording("has-no-derivatives"), tl.improve, BRACKET, metric="sometimes")
+    rejected(wording("cannot-be"), tl.load_metrics, "/nonexistent.so")
 
 
 def shell(*arguments, library=LIBRARY):
@@ -218,9 +218,9 @@ def test_python_file():
     for wrong, message in (("1 / 0", "ZeroDivisionError"), ("x = (", "SyntaxError"), (text.replace("of_file", "imr"),
                            "there is a metric 'imr'")):  # fmt: skip
         file.write_text(wrong.format(0.0), encoding="utf-8")
-        refused(message, tl.load_metrics, file)
-        refused(str(file), tl.load_metrics, file)
-    refused("nowhere.py", tl.load_metrics, OUT / "nowhere.py")
+        rejected(message, tl.load_metrics, file)
+        rejected(str(file), tl.load_metrics, file)
+    rejected("nowhere.py", tl.load_metrics, OUT / "nowhere.py")
     tl.unregister_metric("of_file")
 
 

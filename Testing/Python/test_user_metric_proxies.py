@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The menus of ParaView have registered metrics: those of a library (TAUTLINE_METRICS), and those of Python."""
+"""The menus of ParaView have registered metrics: from a library (TAUTLINE_METRICS), and from Python."""
 
 import os
 import sys
 from wording import wording
 
-HEIGHT = "Height of the centre"  # the label of a metric of the test
+HEIGHT = "Height of the center"  # the label of a metric of the test
 os.environ["TAUTLINE_METRICS"] = sys.argv[1]
 
 import numpy as np  # noqa: E402
@@ -54,12 +54,12 @@ def distortion(source):
 before, after = distortion(sheared), distortion(optimizer)
 assert after[0] < before[0] and after[1] <= before[1], (before, after)
 
-# One that Python registers now is in the menus of filters made afterwards; its number is that of its name.
-tl.register_metric("height", lambda corners, cell: corners[:, :, 2].mean(axis=1), label="Height of the centre",
+# One that Python registers now is in the menus of filters made afterwards; its number follows from its name.
+tl.register_metric("height", lambda corners, cell: corners[:, :, 2].mean(axis=1), label="Height of the center",
                    rotation_invariant=False)  # fmt: skip
 assert HEIGHT not in quality.GetProperty("Metrics").GetAvailable()
 another = ElementQuality(Input=cubes)  # noqa: F821
-another.Metrics = ["Height of the centre"]
+another.Metrics = ["Height of the center"]
 another.UpdatePipeline()
 assert np.allclose(another.CellData["height"].GetRange(), (0.5, 2.5))
 

@@ -19,7 +19,7 @@ POINTS = 125
 def run(ranks: int) -> dict:
     found, text = run_with_output("warp_on_ranks.py", ranks)
     assert text.count("prescribed points are NaN or infinite") >= ranks, text
-    assert found.pop("ranks") == ranks and found.pop("refused") == 0
+    assert found.pop("ranks") == ranks and found.pop("rejected") == 0
     return found
 
 

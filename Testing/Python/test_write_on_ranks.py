@@ -13,7 +13,7 @@ for ranks in (2, 3):
     shutil.rmtree(FOLDER, ignore_errors=True)
     FOLDER.mkdir(parents=True)
     found, text = run_with_output("write_on_ranks.py", ranks, str(FOLDER))
-    # The formats of one process are refused by name, and leave no file.
+    # The formats of one process are rejected by name, and leave no file.
     assert found["saved"] == ["ghosts0.pvtu", "ghosts1.pvtu"], (ranks, found["saved"])
     for ending in ("vtu", "node", "mesh", "msh", "off"):
         assert f"No matching writer found for extension: {ending}" in text, (ranks, ending, text)

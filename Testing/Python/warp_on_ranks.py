@@ -101,7 +101,7 @@ for cut in CUTS:  # (scripts of sources import into this module: "number" would 
 # Coordinates that are not finite on one rank at a time on the way.
 wrong = WarpMesh(mesh("slabs", wrong=1), Motion="Time steps of the input", StartFrom="Previous time step")
 wrong.UpdatePipeline(3.0)
-results["refused"] = update(wrong).GetDataInformation().GetNumberOfCells()
+results["rejected"] = update(wrong).GetDataInformation().GetNumberOfCells()
 note("after", WarpMesh(mesh("slabs"), Motion="Time steps of the input", Method="FEMWARP"), 3.0)
 
 with open(sys.argv[1], "w", encoding="utf-8") as out:

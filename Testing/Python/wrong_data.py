@@ -50,7 +50,7 @@ class Recorder:
 def wrong(value, random: np.random.Generator, count: str = "", way: int = -1):
     """A copy of data whose numbers are others: as large, larger, smaller, 0, exchanged or reversed; meshes, texts stay.
 
-    count: what all counts of a part of the data become, "none" or "many"; "": each one something else.
+    count: the new value of all counts of a part of the data, "none" or "many"; "": each one differs.
     way: how all arrays change; -1: each one in a way of its own.
     """
     if isinstance(value, (bool, np.bool_)):
@@ -111,7 +111,7 @@ def verdicts(calls, directory: Path, random=None) -> dict:
 def check_verdicts(study: str, calls, directory: Path, others=()) -> None:
     """Check that each finding has a decided verdict and another one: of its numbers, random ones, or others' calls.
 
-    The other one is a decided one, too, but where random numbers hardly ever agree about many cases at once.
+    The other one is also a decided one, except where random numbers hardly ever agree about many cases at once.
     """
     right = verdicts(calls, directory)
     assert right, f"{study} states no findings"

@@ -2,7 +2,7 @@
 """check_layers.py SOURCE_TREE: headers are included downwards only.
 
 Layers: Plugin -> Filters, Readers -> Filters/Kernel. The kernel includes nothing of VTK, the filters nothing of
-ParaView or Qt. Of the VTK modules only Core may be a dependency of the others.
+ParaView or Qt. Only the VTK module Core may be a dependency of the others.
 
 Inside the kernel: a room (a folder of Filters/Kernel) includes rooms of lower floors only, the sources Name.h and
 Name.cxx that include each other form no circle with others, and only the rooms of the library TautlineSolvers include
@@ -19,7 +19,7 @@ from typing import Iterator
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.MULTILINE)
 PARAVIEW = r"(vtkSM(?!P(Tools|Thread|Range))|vtkSI[A-Z]|vtkPV|vtkClientServer|vtkProcessModule|vtkRemoting|pq|Q[A-Z])"
 FORBIDDEN = {"kernel": re.compile(r"(vtk|pq|Q[A-Z])"), "filter": re.compile(PARAVIEW)}
-# Parsers and calls of mesh generators are plain C++, too.
+# Parsers and calls of mesh generators are also plain C++.
 PLAIN = re.compile(r"Readers/(?!vtk|(Foam|Gzip|Image|Mesh)FileAdapter)|Filters/Meshing/Generators/")
 SOURCES = (".h", ".cxx")
 
@@ -37,7 +37,7 @@ FLOORS = (
     ("Curved", "Curving", "Deformation", "Polyhedral", "Reconnection"),
 )
 FLOOR = {room: floor for floor, rooms in enumerate(FLOORS, 1) for room in rooms}
-#: The rooms of TautlineSolvers; those of the other libraries need no PETSc and no MPI.
+#: The rooms of TautlineSolvers; rooms of the other libraries need no PETSc and no MPI.
 SOLVERS = {"Ranks", "Solvers", "Elliptic", "Peridynamics", "Deformation"}
 PARALLEL = re.compile(r"(petsc|slepc|mpi)", re.IGNORECASE)
 ROOM_INCLUDE = re.compile(r"tautline/(\w+)/(\w+)\.h")
@@ -98,7 +98,7 @@ def check_circles(kernel: Path) -> Iterator[str]:
             other = f"{found[1]}/{found[2]}" if found else f"{path.parent.name}/{Path(header).stem}"
             if other != unit and (kernel / f"{other}.h").is_file():
                 graph.setdefault(unit, set()).add(other)
-    # What is left when sources that include nothing of the rest are removed, again and again, lies on circles or above.
+    # The sources left after repeatedly removing those that include nothing of the rest lie on circles or above.
     changed = True
     while changed:
         free = [unit for unit, others in graph.items() if not any(other in graph for other in others)]

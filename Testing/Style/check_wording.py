@@ -18,7 +18,7 @@ PINS = {
         rf"\.has\({PROSE}\)",
         rf"\.find\({PROSE}\)\s*[!=]=\s*(?:std::string::|\w+\.)npos",
     ),
-    ".py": (rf"\brefused\(\s*{PROSE},", rf"\bassert {PROSE} (?:not )?in "),
+    ".py": (rf"\brejected\(\s*{PROSE},", rf"\bassert {PROSE} (?:not )?in "),
 }
 PINS[".h"] = PINS[".cxx"]
 

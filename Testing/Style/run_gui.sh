@@ -64,7 +64,7 @@ if [[ $told != *"made with other options"*"-DOTHER=ON"* ]] || ! grep -q -e '-S' 
   echo "run build in a tree with other options: '$told'" >&2
   exit 1
 fi
-# What is tested: arguments of ctest, and slow tests where they are chosen.
+# The tests: arguments of ctest, and slow tests where they are chosen.
 printf '#!/bin/sh\necho "$@"\n' >"$scratch/ctest"
 chmod +x "$scratch/ctest"
 tested() { "$top/run" test "$@" 2>/dev/null | head -n 1; }

@@ -352,7 +352,7 @@ TAUTLINE_PART(testProjection)
     TAUTLINE_CHECK(fine < 0.6 * coarse); // first order is 0.5
     TAUTLINE_CHECK(fine < 0.1);
   }
-  // On the boundary, too, a quadratic has one Hessian where the mesh is regular.
+  // Also on the boundary, a quadratic has one Hessian where the mesh is regular.
   const AdaptationMesh mesh(Mesh(unitBlock(CellType::Triangle, 8).view()));
   const Tensors found =
     recoverHessians(mesh, valuesAt(mesh, Quadratic()), HessianRecovery::DoubleProjection);
@@ -387,7 +387,7 @@ TAUTLINE_PART(testLpMetric)
     const Tensors found = LpMetric(mesh, two, norm, {}).at(1.0);
     TAUTLINE_CHECK_RELATIVE(std::sqrt(found[0][0] / found[1][0]), expected, 1e-9);
   }
-  // With limits the target is that of the limited metric.
+  // With limits, the target follows from the limited metric.
   Random random(6);
   Tensors any(count);
   std::generate(any.begin(), any.end(),
@@ -501,19 +501,21 @@ TAUTLINE_PART(testSources)
   TAUTLINE_CHECK_RELATIVE(makeMetric(mesh, options).extremes.largest, 0.05, 1e-9);
   options.limits.smallest = 0.1;
   TAUTLINE_CHECK_RELATIVE(makeMetric(mesh, options).extremes.largest, 0.1, 1e-9);
-  const auto refused = [&](const char* text, const auto& change)
+  const auto rejected = [&](const char* text, const auto& change)
   {
     MetricOptions wrong = options;
     change(wrong);
     TAUTLINE_CHECK_THROWS(makeMetric(mesh, wrong), text);
   };
-  refused(wording("the-largest-size-is"), [](MetricOptions& o) { o.limits.largest = 0; });
-  refused(wording("the-smallest-size-is"), [](MetricOptions& o) { o.limits.smallest = 2; });
-  refused(wording("the-largest-ratio-of-sizes-is"), [](MetricOptions& o) { o.limits.ratio = NAN; });
-  refused(
+  rejected(wording("the-largest-size-is"), [](MetricOptions& o) { o.limits.largest = 0; });
+  rejected(wording("the-smallest-size-is"), [](MetricOptions& o) { o.limits.smallest = 2; });
+  rejected(
+    wording("the-largest-ratio-of-sizes-is"), [](MetricOptions& o) { o.limits.ratio = NAN; });
+  rejected(
     wording("the-growth-factor-of-the-gradation"), [](MetricOptions& o) { o.gradation = 0.5; });
-  refused(wording("sizes-are-needed"), [](MetricOptions& o) { o.sizes = {}; });
-  refused(wording("a-field-is-needed"), [](MetricOptions& o) { o.source = MetricSource::Hessian; });
+  rejected(wording("sizes-are-needed"), [](MetricOptions& o) { o.sizes = {}; });
+  rejected(
+    wording("a-field-is-needed"), [](MetricOptions& o) { o.source = MetricSource::Hessian; });
   for (const double wrong : { 0.0, -1.0, Infinity, double(NAN) })
   {
     sizes[3] = wrong;
@@ -850,7 +852,7 @@ TAUTLINE_PART(testFilter)
     centers.insert(component(ellipsoids->GetPointData(), "PointId", p));
   }
   TAUTLINE_CHECK(centers.size() > 15 && centers.size() <= 40);
-  // Chained: the metric of sizes is intersected with that of the Hessian.
+  // Chained: the metric of sizes is intersected with the metric of the Hessian.
   TAUTLINE_NEW(vtkMeshMetric, chained, SetInputConnection(filter->GetOutputPort()),
     SetSource(vtkMeshMetric::SIZES), SetInputArrayToProcess(0, 0, 0, PointArrays, "size"),
     SetInputArrayToProcess(4, 0, 0, PointArrays, "Metric"), SetGradation(0), Update());
@@ -932,7 +934,7 @@ TAUTLINE_PART(testFilterData)
 TAUTLINE_PART(testFilterErrors)
 {
   const auto grid = gridWithField(unitBlock(CellType::Triangle, 4));
-  const auto refused = [&](const char* text, const auto& change)
+  const auto rejected = [&](const char* text, const auto& change)
   {
     vtkNew<vtkMeshMetric> filter;
     filter->SetInputData(grid);
@@ -946,37 +948,38 @@ TAUTLINE_PART(testFilterErrors)
     TAUTLINE_SET(filter, SetSource(source), SetInputArrayToProcess(index, 0, 0, PointArrays, name));
   };
   using Metric = vtkMeshMetric;
-  refused(wording("a-field-is-needed"), [](Metric* f) { f->SetSource(Metric::HESSIAN); });
-  refused(wording("sizes-are-needed"), [](Metric* f) { f->SetSource(Metric::SIZES); });
-  refused(wording("there-is-no-point-array-nothing"),
+  rejected(wording("a-field-is-needed"), [](Metric* f) { f->SetSource(Metric::HESSIAN); });
+  rejected(wording("sizes-are-needed"), [](Metric* f) { f->SetSource(Metric::SIZES); });
+  rejected(wording("there-is-no-point-array-nothing"),
     [&](Metric* f) { array(f, Metric::HESSIAN, 1, "nothing"); });
-  refused(wording("the-array-of-sizes-has-3"), [&](Metric* f) { array(f, Metric::SIZES, 0, "V"); });
-  refused(wording("the-array-of-distances-has-3"),
+  rejected(
+    wording("the-array-of-sizes-has-3"), [&](Metric* f) { array(f, Metric::SIZES, 0, "V"); });
+  rejected(wording("the-array-of-distances-has-3"),
     [&](Metric* f) { array(f, Metric::DISTANCE, 2, "V"); });
-  refused(wording("the-array-to-intersect-with-has-3"),
+  rejected(wording("the-array-to-intersect-with-has-3"),
     [&](Metric* f) { array(f, Metric::CURVATURE, 4, "V"); });
-  refused(wording("target-value-is-0"),
+  rejected(wording("target-value-is-0"),
     [&](Metric* f)
     {
       array(f, Metric::HESSIAN, 1, "u");
       f->SetTargetValue(0);
     });
-  refused(wording("norm-is-below-1"),
+  rejected(wording("norm-is-below-1"),
     [&](Metric* f)
     {
       array(f, Metric::HESSIAN, 1, "u");
       f->SetNorm(0.5);
     });
-  refused(wording("gradation-is-at-most-1"), [](Metric* f) { f->SetGradation(0.9); });
-  refused(wording("smallest-size-is-above-largest"),
+  rejected(wording("gradation-is-at-most-1"), [](Metric* f) { f->SetGradation(0.9); });
+  rejected(wording("smallest-size-is-above-largest"),
     [](Metric* f) { TAUTLINE_SET(f, SetSmallestSize(2), SetLargestSize(1)); });
-  refused(wording("array-name-is-empty"), [](Metric* f) { f->SetArrayName(""); });
-  refused(wording("ellipsoid-scale-is-0"), [](Metric* f) { f->SetEllipsoidScale(0); });
+  rejected(wording("array-name-is-empty"), [](Metric* f) { f->SetArrayName(""); });
+  rejected(wording("ellipsoid-scale-is-0"), [](Metric* f) { f->SetEllipsoidScale(0); });
   grid->GetPointData()->GetArray("size")->SetComponent(3, 0, -1.0);
   grid->GetPointData()->GetArray("u")->SetComponent(3, 0, NAN);
-  refused(wording("sizes-are-not-positive-numbers"),
+  rejected(wording("sizes-are-not-positive-numbers"),
     [&](Metric* f) { array(f, Metric::SIZES, 0, "size"); });
-  refused(wording("values-of-the-field-are-not-finite"),
+  rejected(wording("values-of-the-field-are-not-finite"),
     [&](Metric* f) { array(f, Metric::HESSIAN, 1, "u"); });
 }
 }

@@ -288,7 +288,7 @@ TAUTLINE_PART(testGaps)
     TAUTLINE_CHECK_EQUAL(field.totals[0].excess, 0);
   }
   TAUTLINE_CHECK(std::abs(free.fields[0].totals[0].after - free.fields[0].totals[0].before) > 1e-3);
-  // What is far from the gap is the same.
+  // Far from the gap, nothing changes.
   for (Index p = 0; p < moved.numberOfPoints(); ++p)
   {
     const Vec3& x = moved.points()[p];

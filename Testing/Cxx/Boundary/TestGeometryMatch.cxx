@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A mesh has the corners, curves and patches that the geometry has, too, and no others.
+// A mesh has the corners, curves and patches of the geometry, and no others.
 #include "Registry.h"
 #include "Surfaces.h"
 #include "tautline/Boundary/GeometryMatch.h"

@@ -76,7 +76,7 @@ inline vtkSmartPointer<vtkUnstructuredGrid> numberedGridOf(const RankPart& part)
   return grid;
 }
 
-/// The points that a filter gives by those of the whole mesh; HUGE_VAL elsewhere.
+/// The points that a filter gives, in the order of the whole mesh; HUGE_VAL elsewhere.
 template <class Filter, class Set>
 std::vector<double> moved(const MeshData& whole, const RankPart& part, vtkUnstructuredGrid* grid,
   const Set& set, Filter* filter)
@@ -128,8 +128,8 @@ inline void checkSame(const std::vector<double>& here, const std::vector<double>
   TAUTLINE_CHECK(farthest <= 1e-10);
 }
 
-/// Settings that need the whole mesh: it is put together, and the summary says so; the points are
-/// those of one process in its own order. `set` also gets the part.
+/// Settings that need the whole mesh: it is put together, as the summary states; the points equal
+/// the result of one process in its own order. `set` also gets the part.
 template <class Filter, class Set>
 void testGathered(const char* name, vtkMPIController* controller, const MeshData& whole,
   const char* sentence, const Set& set)

@@ -64,7 +64,7 @@ inline vtkPointSet* pointsOf(vtkAlgorithm* filter)
   return outputOf<vtkPointSet>(filter);
 }
 
-/// The largest distance between the points of the pieces and those of the whole.
+/// The largest distance between the points of the pieces and of the whole.
 inline double farthest(const Case& both, vtkPointSet* pieces, vtkPointSet* whole)
 {
   double distance = 0;

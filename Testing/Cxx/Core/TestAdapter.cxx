@@ -45,7 +45,7 @@ TAUTLINE_PART(testUnstructuredGrid)
   // A cell that names a point the grid has not.
   MeshData bad = TAUTLINE_CHANGED(data, connectivity[4 * 6] = 10000);
   const auto broken = toGrid(bad);
-  TAUTLINE_CHECK_THROWS(MeshAdapter refused(broken), "Cell 6");
+  TAUTLINE_CHECK_THROWS(MeshAdapter rejected(broken), "Cell 6");
   for (int vtkType : { VTK_PIXEL, VTK_VOXEL, VTK_LAGRANGE_WEDGE })
   {
     // Too few points at the very end of the connectivity, and points the grid has not.
@@ -54,12 +54,12 @@ TAUTLINE_PART(testUnstructuredGrid)
       bad = TAUTLINE_CHANGED(data, addCell(vtkType, std::vector<Index>{ 0, node, 2 }));
       const auto last = toGrid(bad);
       TAUTLINE_CHECK_THROWS(
-        MeshAdapter refused(last), "Cell " + std::to_string(data.numberOfCells()));
+        MeshAdapter rejected(last), "Cell " + std::to_string(data.numberOfCells()));
     }
     bad = data;
     bad.addCell(vtkType, std::vector<Index>(vtkType == VTK_PIXEL ? 4 : 8, Index(1) << 40));
     const auto far = toGrid(bad);
-    TAUTLINE_CHECK_THROWS(MeshAdapter refused(far), "Cell ");
+    TAUTLINE_CHECK_THROWS(MeshAdapter rejected(far), "Cell ");
   }
 }
 
@@ -67,7 +67,7 @@ TAUTLINE_PART(testUnstructuredGrid)
 /// quadrilaterals.
 TAUTLINE_PART(testRelatedTypes)
 {
-  MeshData data = blockMesh(CellType::Hexahedron, 1, 1, 1); // its points are those of a voxel
+  MeshData data = blockMesh(CellType::Hexahedron, 1, 1, 1); // its points form a voxel
   data.connectivity = { 0, 1, 2, 3, 4, 5, 6, 7 };
   TAUTLINE_SET(data, types[0] = VTK_VOXEL,
     addCell(VTK_TRIANGLE_STRIP, std::vector<Index>{ 0, 1, 2, 3 }),

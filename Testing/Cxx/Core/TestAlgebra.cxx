@@ -32,7 +32,7 @@ TAUTLINE_PART(testUnionFind)
   TAUTLINE_CHECK_EQUAL(apart.find(6), Index(6));
 }
 
-/// L L^T is the shifted matrix, and solve() inverts it; indefinite matrices are refused.
+/// L L^T is the shifted matrix, and solve() inverts it; indefinite matrices are rejected.
 template <int N, CholeskyDiagonal Diagonal>
 void testCholesky()
 {
@@ -114,7 +114,7 @@ TAUTLINE_PART(testLimitedMemory)
   Random random(4);
   std::vector<double> before(size, 0.0), after(size), d(size), step(size);
   TAUTLINE_CHECK(memory.empty());
-  // Of the quadratic function with the Hessian diag(1, 2, ..., n); more steps than are kept.
+  // For the quadratic function with the Hessian diag(1, 2, ..., n); more steps than are kept.
   constexpr int steps = 11;
   for (int k = 0; k < steps; ++k)
   {

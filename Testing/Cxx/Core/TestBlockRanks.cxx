@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Meshes and composite data on several processes: the numbers of Element Quality are those of the
-// whole mesh on one process, also where pieces are inverted; a block that is wrong on one process
-// is an error on all, and none waits for another; blocks with a seam between them are one mesh of
-// the solvers, whichever process has them.
+// Meshes and composite data on several processes: the numbers of Element Quality equal the numbers
+// of the whole mesh on one process, also where pieces are inverted; a block that is wrong on one
+// process is an error on all, and none waits for another; blocks with a seam between them are one
+// mesh of the solvers, whichever process has them.
 #include "Registry.h"
 #include "ThreadRanks.h"
 #include "VtkMeshes.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What Optimize Mesh gathers on the first process: the points are those of one process, the summary
-// states the reason on all processes, and what one process refuses all refuse.
+// Optimize Mesh gathers on the first process: the points equal the result of one process, the
+// summary states the reason on all processes, and an error of one process is an error of all.
 #include "MotionRanks.h"
 #include "MovableMesh.h"
 #include "Registry.h"
@@ -56,7 +56,7 @@ void testSettings(vtkMPIController* controller)
     "points that slide on curved surfaces and geometries need the whole mesh",
     [&](vtkMeshOptimizer* filter, const RankPart&)
     {
-      // The geometry is in pieces, too.
+      // The geometry is also in pieces.
       const bool alone = !vtkMultiProcessController::GetGlobalController();
       const RankPart here = partOf(sphere, rank,
         alone ? std::function<int(Index)>([=](Index) { return rank; })
@@ -91,13 +91,13 @@ void testPieces(vtkMPIController* controller)
     "size", controller, huge, "its coordinates are of extreme size", none);
 }
 
-/// What a part is changed to before it becomes an input.
+/// The change of a part before it becomes an input.
 using Change = std::function<vtkSmartPointer<vtkDataObject>(const RankPart&)>;
 
-/// What a run of the filter has: its error, or the summary.
+/// The outcome of a run of the filter: its error, or the summary.
 struct Outcome
 {
-  bool refused = false, named = false; ///< there is an error, with the text
+  bool rejected = false, named = false; ///< there is an error, with the text
   bool image = false;
   vtkIdType cells = 0;
   std::string summary;
@@ -109,14 +109,14 @@ Outcome outcomeOf(const char* text, const RankPart& part, const Change& change, 
     vtkMeshOptimizer, filter, SetMergeCoincidentPoints(merge), SetInputDataObject(0, change(part)));
   Messages messages(filter);
   filter->Update();
-  return TAUTLINE_CHANGED(Outcome(), refused = messages.has("ERROR: "), named = messages.has(text),
+  return TAUTLINE_CHANGED(Outcome(), rejected = messages.has("ERROR: "), named = messages.has(text),
     image = outputOf<vtkImageData>(filter),
     cells = filter->GetOutputDataObject(0)->GetNumberOfElements(vtkDataObject::CELL),
     summary = filter->GetSummary() ? filter->GetSummary() : "");
 }
 
 /// The same error on each process, also on those that have nothing wrong.
-void testRefused(const char* text, vtkMPIController* controller, const Change& change, bool merge)
+void testRejected(const char* text, vtkMPIController* controller, const Change& change, bool merge)
 {
   const Context context(text);
   const int rank = controller->GetLocalProcessId(), size = controller->GetNumberOfProcesses();
@@ -125,7 +125,7 @@ void testRefused(const char* text, vtkMPIController* controller, const Change& c
   {
     const RankPart part = partOf(whole, rank, cutBy(whole, cut, size));
     const Outcome outcome = outcomeOf(text, part, change, merge);
-    TAUTLINE_CHECK(outcome.refused && outcome.named);
+    TAUTLINE_CHECK(outcome.rejected && outcome.named);
     TAUTLINE_CHECK(outcome.cells == 0 || outcome.image); // which keeps its extent
     TAUTLINE_CHECK_EQUAL(outcome.summary, std::string());
   }
@@ -153,7 +153,7 @@ void testStated(const char* text, vtkMPIController* controller, const Change& ch
   {
     const RankPart part = partOf(whole, rank, cutBy(whole, cut, size));
     const Outcome outcome = outcomeOf(text, part, change, merge);
-    TAUTLINE_CHECK(!outcome.refused);
+    TAUTLINE_CHECK(!outcome.rejected);
     TAUTLINE_CHECK_EQUAL(outcome.cells, static_cast<vtkIdType>(part.cellOf.size()));
     const std::string sentence =
       "\nThe mesh was put together on the first process: its pieces could not be joined. ";
@@ -239,13 +239,13 @@ void testCurved(vtkMPIController* controller)
     [=](const RankPart& own) -> vtkSmartPointer<vtkDataObject>
     { return last ? toGrid(quadratic()) : numberedGridOf(own); },
     true);
-  TAUTLINE_CHECK(!outcome.refused);
+  TAUTLINE_CHECK(!outcome.rejected);
   TAUTLINE_CHECK(contains(outcome.summary, text));
   TAUTLINE_CHECK_EQUAL(outcome.cells, last ? 1 : static_cast<vtkIdType>(part.cellOf.size()));
   TAUTLINE_CHECK(isShared(controller, outcome.summary));
 }
 
-/// What the last process only has wrong.
+/// Errors of the last process only.
 void testErrors(vtkMPIController* controller)
 {
   const bool last = controller->GetLocalProcessId() == controller->GetNumberOfProcesses() - 1;
@@ -258,7 +258,7 @@ void testErrors(vtkMPIController* controller)
       return grid;
     },
     false);
-  testRefused(
+  testRejected(
     wording("points-at-different-places-have-the-global"), controller,
     [=](const RankPart& part)
     {
@@ -268,7 +268,7 @@ void testErrors(vtkMPIController* controller)
       return grid;
     },
     false);
-  testRefused(
+  testRejected(
     wording("are-implicit-and-cannot-move"), controller,
     [=](const RankPart& part) -> vtkSmartPointer<vtkDataObject>
     {

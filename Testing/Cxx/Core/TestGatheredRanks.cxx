@@ -140,7 +140,7 @@ void testFilter(const char* name, const MeshData& whole, bool stays, const Input
   filter->Update();
   TAUTLINE_CHECK(messages.empty());
   TAUTLINE_CHECK_EQUAL(cellsOf(filter), expected);
-  // One piece is corrupt: all say so.
+  // One piece is corrupt: all report it.
   auto wrong = part(whole, rank(), ranks());
   if (rank() == 1)
   {
@@ -203,12 +203,12 @@ void testNumbers()
   TAUTLINE_CHECK(improver->GetWorstBefore() > 1);
   TAUTLINE_CHECK_EQUAL(improver->GetHistory()->GetNumberOfRows() > 0, rank() == 0);
   // An error of the whole mesh is one on all processes.
-  vtkNew<vtkMeshImprover> refused;
-  Messages messages(refused);
-  refused->SetInputData(part(blockMesh(CellType::Hexahedron, 2, 2, 2), rank(), ranks()));
-  refused->Update();
-  TAUTLINE_CHECK(!messages.empty() && std::string(refused->GetSummary()).empty());
-  TAUTLINE_CHECK_EQUAL(cellsOf(refused), 0);
+  vtkNew<vtkMeshImprover> rejected;
+  Messages messages(rejected);
+  rejected->SetInputData(part(blockMesh(CellType::Hexahedron, 2, 2, 2), rank(), ranks()));
+  rejected->Update();
+  TAUTLINE_CHECK(!messages.empty() && std::string(rejected->GetSummary()).empty());
+  TAUTLINE_CHECK_EQUAL(cellsOf(rejected), 0);
 }
 
 /// Blocks: how many a process has differs.
@@ -235,7 +235,7 @@ void testBlocks()
     vtkDataSet::SafeDownCast(output->GetBlock(2))->GetPointData()->GetArray("Displacement"));
 }
 
-/// What a process selects of its piece is selected of the mesh.
+/// A selection of a process in its piece is a selection in the mesh.
 void testSelection()
 {
   const Context context("selection");
@@ -421,8 +421,8 @@ void testNotJoined()
   TAUTLINE_CHECK(messages.has("global"));
 }
 
-/// Shape Retrieval divides the pairs among the processes: the distances are those of one, bitwise;
-/// an image without a shape is left out, with a warning where it is.
+/// Shape Retrieval divides the pairs among the processes: the distances equal the distances of one,
+/// bitwise; an image without a shape is left out, with a warning where it is.
 void testRetrieval()
 {
   const Context context("pairs of Shape Retrieval");

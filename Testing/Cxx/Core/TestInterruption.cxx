@@ -22,7 +22,7 @@ using namespace tautline;
 
 namespace
 {
-/// What an interruption may take on a machine under load; the work would take much longer.
+/// The time that an interruption may take on a machine under load; the work would take much longer.
 constexpr double Soon = 20.0;
 
 std::atomic<int> Signals{ 0 };
@@ -88,7 +88,7 @@ TAUTLINE_PART(testScopes)
     throwIfInterrupted();
   }
   TAUTLINE_CHECK_EQUAL(Signals.load(), 2);
-  // What the process ignores stays ignored.
+  // Signals that the process ignores stay ignored.
   std::signal(SIGINT, SIG_IGN);
   {
     const InterruptScope scope;
@@ -239,7 +239,7 @@ TAUTLINE_PART(testHorizonNeighbors)
 }
 
 //------------------------------------------------------------------------------
-/// What a thread computes between two polls counts, not what it waits, nor what is polled.
+/// The computing time of a thread between two polls counts, neither its waiting nor the polling.
 TAUTLINE_PART(testMeasure)
 {
   constexpr double span = 0.05; // seconds of CPU time
@@ -287,7 +287,7 @@ TAUTLINE_PART(testMeasure)
     TAUTLINE_CHECK(unpolled >= (last ? 3 : 2) * span);
     TAUTLINE_CHECK(unpolled < (last ? 4 : 3) * span);
   }
-  // What follows an interruption frees what was computed, and can not poll.
+  // The code after an interruption frees the computed data, and cannot poll.
   TAUTLINE_CHECK(measured(
                    [&]
                    {

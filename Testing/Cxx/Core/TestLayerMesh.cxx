@@ -58,7 +58,7 @@ TAUTLINE_PART(testFind)
   const Mesh mesh(side.view());
   TAUTLINE_CHECK(mesh.dimension() == Dimension::Planar);
   TAUTLINE_EACH_OF(signed char v, validityOf(mesh), TAUTLINE_CHECK_EQUAL(int(v), int(Valid)));
-  // Facets across the layer are lines, with their arrays; those of the sides are left out.
+  // Facets across the layer are lines, with their arrays; facets of the sides are left out.
   MeshData faced = movedBlock(CellType::Hexahedron, 1);
   faced.addCell(CellType::Quadrilateral, std::vector<Index>{ 0, 1, 7, 6 });
   faced.addCell(CellType::Quadrilateral, std::vector<Index>{ 0, 1, 37, 36 });
@@ -110,7 +110,7 @@ TAUTLINE_PART(testOptimize)
   }
 }
 
-/// The preset Finite volumes in the filter: fixed points stay, checks and arrays are those of the
+/// The preset Finite volumes in the filter: fixed points stay, checks and arrays describe the
 /// output.
 TAUTLINE_PART(testFiniteVolumes)
 {

@@ -45,7 +45,7 @@ void leave(int resource, double bytes)
   const double before = availableMemory();
   rlimit limit{};
   getrlimit(static_cast<__rlimit_resource>(resource), &limit);
-  // With a limit of a terabyte, what is available tells what is used.
+  // With a limit of a terabyte, the available memory shows the used memory.
   constexpr double large = 1024 * 1024 * Mebibyte;
   limit.rlim_cur = static_cast<rlim_t>(large);
   setrlimit(static_cast<__rlimit_resource>(resource), &limit);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Filters that move points, of pieces whose copies of a point have the same global id and places
-// that differ by rounding: seams move as those of one mesh, on processes, gathered on the first
+// that differ by rounding: seams move as in one mesh, on processes, gathered on the first
 // one, and in one data set on one process.
 #include "MotionRanks.h"
 #include "Registry.h"
@@ -29,7 +29,7 @@ RankPart shifted(
 }
 
 /// The mesh with the places that the copies get: the first by the coordinates, or, of a mesh that
-/// is gathered, those of the first process.
+/// is gathered, the points of the first process.
 MeshData joined(const MeshData& whole, int pieces, const std::function<int(Index)>& pieceOf,
   bool gathered, bool ghosts = false)
 {
@@ -57,7 +57,7 @@ MeshData joined(const MeshData& whole, int pieces, const std::function<int(Index
 
 const auto allOf = [](Index) { return 0; };
 
-/// What moved() gives on one process, without the others.
+/// The result of moved() on one process, without the others.
 template <class Filter, class Set>
 std::vector<double> alone(
   vtkMPIController* controller, const MeshData& whole, const Set& set, Filter* filter)
@@ -118,7 +118,7 @@ void testOwnNumbers(vtkMPIController* controller)
   TAUTLINE_CHECK(!contains(filter->GetSummary(), wording("global-id")));
 }
 
-/// Copies that are too far apart stay so, and the summary says it on all processes.
+/// Copies that are too far apart stay so, and the summary states it on all processes.
 void testApart(vtkMPIController* controller)
 {
   const Context context("apart");
@@ -221,7 +221,7 @@ void testOverlap(
     checkSame(moved(whole, part, gridOf(part), set, filter.Get()), expected);
     TAUTLINE_CHECK_EQUAL(filter->GetInvertedAfter(), serial->GetInvertedAfter());
     TAUTLINE_CHECK(contains(filter->GetSummary(), wording("they-count-once")));
-    // The counts are those of the mesh without copies.
+    // The counts equal the counts of the mesh without copies.
     const auto countOf = [](Filter* one)
     {
       const std::string summary = one->GetSummary();
@@ -465,7 +465,7 @@ void testOtherCells(vtkMPIController* controller)
   }
 }
 
-/// Cells of all processes, and a number that their places give, but for their order.
+/// Cells of all processes, and a number that follows from their places, except for their order.
 std::pair<vtkIdType, double> contentOf(vtkMPIController* controller, vtkMeshImprover* filter)
 {
   auto* output = outputOf<vtkUnstructuredGrid>(filter);
@@ -488,7 +488,8 @@ std::pair<vtkIdType, double> contentOf(vtkMPIController* controller, vtkMeshImpr
   return { cells, sum };
 }
 
-/// Improve Mesh, whose result depends on the number of processes: that of exact copies.
+/// Improve Mesh, whose result depends on the number of processes: the same result as with exact
+/// copies.
 void testImprover(vtkMPIController* controller)
 {
   const MeshData whole = jittered(CellType::Tetrahedron, 5, 0.25);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Optimize Mesh and Untangle Mesh on processes: points, tables and summaries are those of one
-// process, however the mesh is cut.
+// Optimize Mesh and Untangle Mesh on processes: points, tables and summaries equal the results of
+// one process, however the mesh is cut.
 #include "CollapsedMeshes.h"
 #include "MotionRanks.h"
 #include "Registry.h"
@@ -15,7 +15,8 @@ namespace
 {
 std::string divided(int size, int how)
 {
-  return "\nThe mesh was divided anew among " + std::to_string(size) + " processes" +
+  return std::string("\nThe mesh was ") + wording("divided-anew") + " among " +
+    std::to_string(size) + " processes" +
     (how == vtkMeshMotionAlgorithm::PT_SCOTCH ? " by PT-Scotch." : ".");
 }
 
@@ -47,10 +48,10 @@ void testFilter(const char* name, vtkMPIController* controller, const MeshData& 
     checkSame(pointsOf(whole, few, set, other.Get()), expected);
     check(serial.Get(), other.Get(), rank);
   }
-  // All of it on the first process, divided anew.
+  // All of it on the first process, redistributed.
   for (const int how : { vtkMeshMotionAlgorithm::KD_TREE, vtkMeshMotionAlgorithm::PT_SCOTCH })
   {
-    const Context inner("divided anew " + std::to_string(how));
+    const Context inner("redistributed " + std::to_string(how));
     const RankPart part = partOf(whole, rank, all);
     TAUTLINE_NEW(Filter, filter, SetRedistribute(how));
     checkSame(pointsOf(whole, part, set, filter.Get()), expected);
@@ -158,7 +159,7 @@ std::pair<double, double> shapeOf(const MeshData& data)
     std::inner_product(q.begin(), q.end(), q.begin(), 0.0) };
 }
 
-/// Moves the coordinates of inner points to their neighbours in single precision as long as the sum
+/// Moves the coordinates of inner points to their neighbors in single precision as long as the sum
 /// gets smaller: better than what is best, rounded.
 void improveInSingle(MeshData& data)
 {
@@ -262,7 +263,7 @@ void testSingle(vtkMPIController* controller)
   TAUTLINE_CHECK(doubled > 0);
 }
 
-/// Weights and targets are of cells: each process has those of its own.
+/// Weights and targets belong to cells: each process has the values of its own cells.
 void testElementArrays(vtkMPIController* controller)
 {
   const MeshData tets = jittered(CellType::Tetrahedron, 4, 0.25);
@@ -300,7 +301,7 @@ void testElementArrays(vtkMPIController* controller)
     checkOptimizer);
 }
 
-/// What is gathered, with the result of one process.
+/// Operations that gather the mesh, with the result of one process.
 void testWholeMeshes(vtkMPIController* controller)
 {
   const MeshData tets = jittered(CellType::Tetrahedron, 4, 0.25);
@@ -342,7 +343,7 @@ void testWholeMeshes(vtkMPIController* controller)
   MeshData wave = jittered(CellType::Triangle, 8, 0.25);
   wave.transform(TAUTLINE_PLACE(p[0], p[1], 0.3 * std::sin(p[0])));
   const char* inSpace =
-    "it is a surface in space, or in a plane that is not at right angles to an axis";
+    "it is a surface in space, or in a plane that is not perpendicular to an axis";
   testGathered<vtkMeshOptimizer>(
     "surface", controller, wave, inSpace, [](vtkMeshOptimizer*, const RankPart&) {});
   MeshData turned = jittered(CellType::Triangle, 8, 0.8);
@@ -444,7 +445,7 @@ struct ProgressTexts
   bool stops, found = false;
 };
 
-/// Shows iterations, can be stopped, and says why no point is free, as one process does.
+/// Shows iterations, can be stopped, and states why no point is free, as one process does.
 void testAsOneProcess(vtkMPIController* controller)
 {
   const int rank = controller->GetLocalProcessId(), size = controller->GetNumberOfProcesses();
@@ -597,13 +598,13 @@ void testAnimation(vtkMPIController* controller)
   TAUTLINE_CHECK(messages.empty());
 }
 
-/// What is wrong on one process is an error on all, and what cannot be done is refused by name.
-void testRefusals(vtkMPIController* controller)
+/// An error on one process is an error on all, and unsupported operations are rejected by name.
+void testRejections(vtkMPIController* controller)
 {
   const int rank = controller->GetLocalProcessId(), size = controller->GetNumberOfProcesses();
   const MeshData whole = jittered(CellType::Tetrahedron, 3, 0.2);
-  const auto refused = [&](const char* text, const std::function<void(vtkMeshOptimizer*)>& set,
-                         const std::function<void(RankPart&)>& change)
+  const auto rejected = [&](const char* text, const std::function<void(vtkMeshOptimizer*)>& set,
+                          const std::function<void(RankPart&)>& change)
   {
     const Context context(text);
     RankPart part = partOf(whole, rank, cutBy(whole, Cut::Random, size));
@@ -617,23 +618,23 @@ void testRefusals(vtkMPIController* controller)
       filter->GetOutputDataObject(0)->GetNumberOfElements(vtkDataObject::CELL), 0);
   };
   const auto none = [](auto&&) {};
-  refused(
+  rejected(
     wording("switch-animation-off"),
     [](vtkMeshOptimizer* filter) { TAUTLINE_SET(filter, AnimationOn(), ReproducibleOrderOn()); },
     none);
-  refused(
+  rejected(
     "'none'",
     [](vtkMeshOptimizer* filter)
     { filter->SetInputArrayToProcess(4, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "none"); },
     none);
-  refused(
+  rejected(
     wording("weights-must-be-finite-and-at-least"),
     [](vtkMeshOptimizer* filter)
     { filter->SetInputArrayToProcess(4, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "wrong"); },
     none);
 }
 
-/// What one process alone has wrong, whichever, of a mesh to untangle.
+/// An error of any one process, in a mesh to untangle.
 void testUntanglerFailures(vtkMPIController* controller)
 {
   const int rank = controller->GetLocalProcessId(), size = controller->GetNumberOfProcesses();
@@ -689,7 +690,7 @@ TAUTLINE_TEST(TestMotionRanks)
   TAUTLINE_RUN(testCollapsed(controller));
   TAUTLINE_RUN(testMostlyInverted(controller));
   TAUTLINE_RUN(testAnimation(controller));
-  TAUTLINE_RUN(testRefusals(controller));
+  TAUTLINE_RUN(testRejections(controller));
   TAUTLINE_RUN(testUntanglerFailures(controller));
   TAUTLINE_RUN(testBlocks(controller));
   vtkMultiProcessController::SetGlobalController(nullptr);

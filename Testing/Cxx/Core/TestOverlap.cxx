@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Parts of a mesh that overlap: copies of cells count once and their points move alike, in both
-// orders; parts on top of each other with other cells are kept apart, or refused.
+// orders; parts on top of each other with other cells are kept apart, or rejected.
 #include "Registry.h"
 #include "Seams.h"
 #include "ThreadRanks.h"
@@ -23,7 +23,7 @@ const auto types = { CellType::Triangle, CellType::Quadrilateral, CellType::Tetr
 struct Overlapping
 {
   MeshData whole, pieces;
-  std::vector<Index> pointOf; ///< per point of the pieces: that of the whole mesh
+  std::vector<Index> pointOf; ///< per point of the pieces: its number in the whole mesh
 
   void add(const RankPart& part)
   {
@@ -75,7 +75,7 @@ Overlapping onTopOfEachOther(CellType type)
   return both;
 }
 
-/// The points move as those of the whole mesh.
+/// The points move as in the whole mesh.
 template <class Filter, class Set>
 void checkAlike(const Overlapping& both, bool exact, bool boundaryStays, const Set& set)
 {

@@ -123,8 +123,8 @@ void testScratch()
 }
 
 //------------------------------------------------------------------------------
-/// Several chunks fail, the later ones sooner: the message is that of the first. The next loop
-/// runs.
+/// Several chunks fail, the later ones sooner: the message comes from the first. The next
+/// loop runs.
 void testErrors()
 {
   constexpr Index n = 40, first = 5, repetitions = 20;
@@ -316,7 +316,7 @@ void testFork()
 void testWaiting()
 {
   constexpr int loops = 20;
-  // A thread that spins takes a half of the time or more; twenty new threads take some, too.
+  // A thread that spins takes a half of the time or more; twenty new threads also take some.
   constexpr double pause = 10e-3, share = 0.2;
   constexpr int crowded = 2; // runnable threads per core: no worker is asked then
   std::atomic<int> waited{ 0 };

@@ -207,7 +207,7 @@ TAUTLINE_PART(testOthers)
   TAUTLINE_CHECK_EQUAL(parts->GetSmallestAngleAfter(), whole->GetSmallestAngleAfter());
 }
 
-/// A part of a mesh whose cells list their points in the other order, as its neighbours have not.
+/// A part of a mesh whose cells list their points in the other order, as its neighbors have not.
 TAUTLINE_PART(testQuality)
 {
   MeshData mesh = TAUTLINE_CHANGED(rough(CellType::Tetrahedron, 4), swapNodes(0, 1, 0, Parts));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What fails on one rank, wherever it does, ends on all of them, and they work together afterwards.
+// A failure on any rank ends the work on all of them, and they work together afterwards.
 #include "Registry.h"
 #include "ThreadRanks.h"
 #include "tautline/Core/Interruption.h"
@@ -112,7 +112,7 @@ TAUTLINE_PART(testNested)
   }
 }
 
-/// What all throw alike is what they get; an interruption is one on its own rank.
+/// An error that all throw alike is the error of all; an interruption is one on its own rank.
 TAUTLINE_PART(testKinds)
 {
   TAUTLINE_CHECK(endsOf([](RankGroup&) { throw MemoryError("Not enough."); }) == onAll("memory"));
@@ -133,17 +133,17 @@ TAUTLINE_PART(testKinds)
   TAUTLINE_CHECK_EQUAL(ends[failing], "interrupted");
   TAUTLINE_CHECK_EQUAL(ends[0], "In process 1: the computation was interrupted");
   TAUTLINE_CHECK_EQUAL(ends[2], ends[0]);
-  // Of two failures, the one of the lower rank.
+  // With two failures, the one of the lower rank counts.
   const auto two = endsOf(
     [](RankGroup& group)
     {
       if (group.rank() > 0)
       {
-        throw Error("Of rank " + std::to_string(group.rank()));
+        throw Error("From rank " + std::to_string(group.rank()));
       }
       group.sum(Index(1));
     });
-  TAUTLINE_CHECK(two == onAll("In process 1: Of rank 1"));
+  TAUTLINE_CHECK(two == onAll("In process 1: From rank 1"));
   TAUTLINE_CHECK(endsOf([](RankGroup& group) { group.sum(Index(1)); }) == onAll(""));
 }
 

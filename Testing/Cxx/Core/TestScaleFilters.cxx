@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Filters on meshes of extreme size or far from the origin: the result is that of the mesh of
+// Filters on meshes of extreme size or far from the origin: the result matches the mesh of
 // ordinary size, or an error or a warning names the problem and the remedy.
 #include "Registry.h"
 #include "VtkMeshes.h"
@@ -56,7 +56,7 @@ std::vector<double> pointsOf(vtkAlgorithm* filter)
   return points;
 }
 
-/// The largest distance between points, those of the first divided by a power of two.
+/// The largest distance between points, after the first ones are divided by a power of two.
 double difference(const std::vector<double>& a, int exponent, const std::vector<double>& b)
 {
   return largestOf<double>(a.size() == b.size() ? 0.0 : HUGE_VAL, std::min(a.size(), b.size()),
@@ -116,7 +116,7 @@ TAUTLINE_PART(testStatistics)
   }
 }
 
-/// An objective that compares with a target of length 1 is refused; with a reference it is not.
+/// An objective that compares with a target of length 1 is rejected; with a reference it is not.
 TAUTLINE_PART(testTargets)
 {
   const MeshData data = scaled(perturbed(CellType::Triangle), -498);
@@ -200,10 +200,10 @@ TAUTLINE_PART(testMeasuring)
   TAUTLINE_CHECK(messages.has(wording("size-area-or-volume-of-320-elements")));
 }
 
-/// What assembles matrices refuses extreme sizes by name.
-TAUTLINE_PART(testRefusals)
+/// Filters that assemble matrices reject extreme sizes by name.
+TAUTLINE_PART(testRejections)
 {
-  const auto refuses = [](vtkAlgorithm* filter, const MeshData& data, const char* text)
+  const auto rejects = [](vtkAlgorithm* filter, const MeshData& data, const char* text)
   {
     for (int exponent : { -498, -100, 100, 498 })
     {
@@ -223,13 +223,13 @@ TAUTLINE_PART(testRefusals)
   const MeshData data = blockMesh(CellType::Triangle, 4, 4, 0);
   TAUTLINE_NEW(vtkMeshWarp, warp, SetMotion(vtkMeshWarp::DISPLACEMENT),
     SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "d"));
-  refuses(warp, data, wording("warping-needs-cells-between-5-4e-20"));
+  rejects(warp, data, wording("warping-needs-cells-between-5-4e-20"));
   vtkNew<vtkConditionEstimator> condition;
-  refuses(condition, data, wording("a-finite-element-matrix-needs-cells-between"));
+  rejects(condition, data, wording("a-finite-element-matrix-needs-cells-between"));
   vtkNew<vtkHorizonNeighbors> neighbors;
-  refuses(neighbors, data, wording("a-nonlocal-model-needs-cells-between"));
+  rejects(neighbors, data, wording("a-nonlocal-model-needs-cells-between"));
   vtkNew<vtkInteractionLayer> layer;
-  refuses(layer, data, wording("a-nonlocal-model-needs-cells-between"));
+  rejects(layer, data, wording("a-nonlocal-model-needs-cells-between"));
 
   Messages messages(neighbors);
   TAUTLINE_SET(neighbors, SetInputData(toGrid(data)), SetHorizon(1e200), Update());

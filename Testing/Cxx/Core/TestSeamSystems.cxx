@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Meshes in pieces, with several points at each place of their seams: linear systems and nonlocal
-// models on them are those of the whole mesh; blocks with seams between them.
+// models on them equal the results of the whole mesh; blocks with seams between them.
 #include "Registry.h"
 #include "Seams.h"
 #include "vtkConditionEstimator.h"
@@ -171,8 +171,8 @@ TAUTLINE_PART(testBlocks)
     const Context context(filter->GetClassName());
     Messages said(filter);
     TAUTLINE_SET(filter, SetInputDataObject(0, blocks), Update());
-    TAUTLINE_CHECK(said.has(std::to_string(both.pieces.copies) +
-      " points of a block coincide with those of another one"));
+    TAUTLINE_CHECK(said.has(
+      std::to_string(both.pieces.copies) + " points" + wording("points-of-a-block-coincide-with")));
     TAUTLINE_CHECK(said.has(wording("merge-blocks")));
     TAUTLINE_CHECK(contains(filter->GetSummary(), wording("merge-blocks")));
     TAUTLINE_CHECK(outputOf<vtkMultiBlockDataSet>(filter)->GetBlock(3)->GetNumberOfElements(
@@ -189,13 +189,13 @@ TAUTLINE_PART(testBlocks)
   check(perturbation.Get());
   TAUTLINE_CHECK(perturbation->GetNumberOfMovablePoints() == 4 * 9);
   vtkNew<vtkMeshOptimizer> sliding;
-  Messages refused(sliding);
+  Messages rejected(sliding);
   TAUTLINE_SET(
     sliding, SetInputDataObject(0, blocks), SetBoundary(vtkMeshOptimizer::SLIDING), Update());
-  TAUTLINE_CHECK(refused.has(wording("blocks-would-come-apart")));
-  TAUTLINE_CHECK(refused.has(wording("merge-blocks")));
+  TAUTLINE_CHECK(rejected.has(wording("blocks-would-come-apart")));
+  TAUTLINE_CHECK(rejected.has(wording("merge-blocks")));
 
-  // Blocks at the same place are no neighbours, and those that are far from each other neither.
+  // Blocks at the same place are no neighbors, and neither are blocks that are far from each other.
   TAUTLINE_SET(
     blocks, SetBlock(1, grids[0]), SetBlock(2, toGrid(both.whole)), SetBlock(3, nullptr));
   vtkNew<vtkMeshOptimizer> quiet;
@@ -225,7 +225,7 @@ TAUTLINE_PART(testPeridynamics)
   TAUTLINE_CHECK(expected->GetCondition() > 2);
   TAUTLINE_CHECK_RELATIVE(stiffness->GetCondition(), expected->GetCondition(), 1e-9);
 
-  // The layer in pieces, too.
+  // The layer is also in pieces.
   MeshData layered;
   auto* grid = vtkUnstructuredGrid::SafeDownCast(whole->GetOutput());
   for (vtkIdType p = 0; p < grid->GetNumberOfPoints(); ++p)

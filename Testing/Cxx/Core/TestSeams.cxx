@@ -105,7 +105,7 @@ TAUTLINE_PART(testPerturb)
     runBoth(both, pieces.Get(), whole.Get());
     TAUTLINE_CHECK_EQUAL(pieces->GetNumberOfMovablePoints(), whole->GetNumberOfMovablePoints());
     TAUTLINE_CHECK(contains(pieces->GetSummary(), said(both)));
-    // All points of a place move together, those of the seams, too.
+    // All points of a place move together, also on the seams.
     MeshData moved = both.whole;
     for (Index p = both.pieces.mesh.numberOfPoints() - 1; p >= 0; --p)
     {
@@ -162,7 +162,7 @@ TAUTLINE_PART(testWarp)
       TAUTLINE_CHECK(messages.empty());
       TAUTLINE_CHECK_NEAR(farthest(both, pointsOf(pieces), pointsOf(whole)), 0, 1e-12);
       TAUTLINE_CHECK(contains(pieces->GetSummary(), said(both)));
-      // The same mesh again: nothing is computed anew.
+      // The same mesh again: nothing is recomputed.
       TAUTLINE_SET(pieces, SetAmount(0.5), Update());
       TAUTLINE_CHECK_EQUAL(pieces->GetReused(), 1);
     }
@@ -203,7 +203,7 @@ TAUTLINE_PART(testQuality)
   const std::string text = notice(both.pieces.mesh);
   TAUTLINE_CHECK(contains(text,
     std::to_string(both.pieces.copies) +
-      " points on 1 seam are at the place of another one, the "
+      " points on 1 seam coincide with another one; the "
       "first is point "));
   TAUTLINE_CHECK(messages.has(wording("clean-to-grid")));
   MeshData nearly = both.pieces.mesh;
@@ -222,12 +222,13 @@ TAUTLINE_PART(testQuality)
   const Index cells = both.whole.numberOfCells();
   TAUTLINE_CHECK(contains(notice(twice),
     "2 duplicate cells have the same points as another one: " + std::to_string(cells) +
-      " (those of 7), " + std::to_string(cells + 1) + " (those of 9)."));
+      wording("duplicate-cell-of") + "7), " + std::to_string(cells + 1) +
+      wording("duplicate-cell-of") + "9)."));
 }
 
 TAUTLINE_PART(testDuplicateCells)
 {
-  // The boundary is fixed at duplicate cells, too.
+  // The boundary is also fixed at duplicate cells.
   const MeshData data = rough(CellType::Tetrahedron, 4, 0.2);
   MeshData twice = data;
   for (Index cell = 0; cell < data.numberOfCells(); ++cell)

@@ -240,7 +240,7 @@ TAUTLINE_PART_SLOW(testNonFinite)
     TAUTLINE_CHECK_NEAR(gradient[i], expected[i], 1e-6 * largest(expected)));
 }
 
-/// A fan of so many triangles that no colouring is left is refused in words.
+/// A fan with more triangles than a coloring can have colors is rejected with a message.
 TAUTLINE_PART(testExtremeVertex)
 {
   constexpr Index triangles = 65 * 4096 + 1; // one more than 65 chunks of 4096

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the check of VTK's data objects finds, and how it names it. What filters do with such data
-// is tested by TestHostileInput.
+// The check of VTK's data objects: its findings and their names. TestHostileInput tests the
+// reaction of filters to such data.
 #include "Registry.h"
 #include "ValidateInput.h"
 #include "VtkCompatibility.h"
@@ -126,7 +126,7 @@ TAUTLINE_PART(testCells)
     [](auto* offsets, auto*) { offsets->SetValue(4, 17); });
   wrong("Cell 1 has no proper place in the connectivity: its offsets descend from 4 to 3",
     [](auto* offsets, auto*) { offsets->SetValue(2, 3); });
-  wrong("Cell 0 begins at place 1 of the connectivity, not at 0",
+  wrong("Cell 0 begins at position 1 of the connectivity, not at 0",
     [](auto* offsets, auto*) { offsets->SetValue(0, 1); });
   wrong("The offsets of the cells end at 160, but the connectivity has 159 entries",
     [](auto*, auto* ids) { ids->SetNumberOfValues(159); });
@@ -193,7 +193,7 @@ TAUTLINE_PART(testSelections)
   ids->InsertNextValue(27);
   TAUTLINE_CHECK_EQUAL(problem(ids, vtkSelectionNode::CELL, mesh), "");
   TAUTLINE_CHECK_EQUAL(problem(ids, vtkSelectionNode::POINT, mesh),
-    "The selection names point 27, but the mesh has 27 points: it was made of another mesh, select "
+    "The selection names point 27, but the mesh has 27 points: it was made on another mesh; select "
     "again.");
   TAUTLINE_NEW(vtkStringArray, text, InsertNextValue("7"));
   TAUTLINE_CHECK_EQUAL(problem(text, vtkSelectionNode::POINT, mesh),

@@ -188,7 +188,7 @@ TAUTLINE_PART(testPartitions)
         const WholeMesh other = assemble(plain(moved), &whole);
         checkNumbers(other, moved);
         TAUTLINE_CHECK_EQUAL(other.mesh->GetPoint(1)[0], -whole.mesh->GetPoint(1)[0]);
-        // What is known of the order of points that were put together.
+        // The facts about the order of points that were put together.
         const WholeMesh alone = assemble(plain(moved));
         const auto given = toGrid(data);
         const PointOrder order = ids ? PointOrder::ById : PointOrder::Coordinates;

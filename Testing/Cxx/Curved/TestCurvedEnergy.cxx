@@ -99,7 +99,7 @@ void testMetrics(const MeshData& data, int dimension)
   }
   CurvedObjective objective;
   objective.objective.objectiveTemplate = ObjectiveTemplate::PowerMean;
-  testDerivatives(data, objective, dimension, false); // its Hessian is that of the sum within
+  testDerivatives(data, objective, dimension, false); // its Hessian equals the sum's within
 
   const std::vector<double> sizes(data.numberOfCells(), 0.3);
   std::vector<double> tensors;
@@ -165,7 +165,7 @@ TAUTLINE_PART(testQuadratures)
           const double base = shape.type == CellType::Wedge || shape.type == CellType::Triangle
             ? simplexMean(a, b, 0, 2)
             : lineMean(a) * lineMean(b);
-          // Of a pyramid the sections have the weight (1 - w)^2.
+          // The sections of a pyramid have the weight (1 - w)^2.
           const double height = shape.type == CellType::Pyramid
             ? 3 * std::tgamma(c + 1) * std::tgamma(3) / std::tgamma(c + 4)
             : lineMean(c);

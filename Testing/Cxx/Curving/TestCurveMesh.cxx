@@ -443,7 +443,7 @@ TAUTLINE_PART(testKeptShape)
           {
             const Vec3 r = random.vector(0, 0.3);
             const Vec3 at = { r[0], r[1], flat ? 0 : r[2] };
-            // Of Lagrange wedges the triangles are listed from the other side.
+            // The triangles of Lagrange wedges are listed from the other side.
             const bool turned = type == CellType::Wedge && from == 2 && to > 2;
             error = std::max(error,
               norm(pointIn(data, cell, at) -
@@ -668,26 +668,26 @@ TAUTLINE_PART(testRegions)
     std::count(without.onBoundary.begin(), without.onBoundary.end(), 1));
 }
 
-TAUTLINE_PART(testRefused)
+TAUTLINE_PART(testRejected)
 {
-  const auto refuses = [](const std::string& text, const std::function<void()>& work)
+  const auto rejects = [](const std::string& text, const std::function<void()>& work)
   { TAUTLINE_CHECK_THROWS(work(), text); };
   const MeshData pyramids = blockMesh(CellType::Pyramid, 1, 1, 1);
   const MeshData cube = blockMesh(CellType::Hexahedron, 1, 1, 1);
   for (int order : { 3, 4 })
   {
-    refuses(wording("no-pyramids-of-order"), [&] { curve(pyramids, order); });
+    rejects(wording("no-pyramids-of-order"), [&] { curve(pyramids, order); });
   }
   for (int order : { 0, 5 })
   {
-    refuses(wording("order-must-be-1-to-4"), [&] { curve(cube, order); });
+    rejects(wording("order-must-be-1-to-4"), [&] { curve(cube, order); });
   }
   MeshData polygons = blockMesh(CellType::Quadrilateral, 2, 1, 0);
   constexpr int polygon = 7, bezierTriangle = 76;
   polygons.addCell(polygon, { 0, 1, 2, 5, 4 });
-  refuses(wording("polygons-cannot-be-curved"), [&] { curve(polygons, 2); });
+  rejects(wording("polygons-cannot-be-curved"), [&] { curve(polygons, 2); });
   const Mesh surface(cube.view());
-  refuses(wording("straight-cells-on-a-geometry"),
+  rejects(wording("straight-cells-on-a-geometry"),
     [&]
     {
       curve(cube, 2,
@@ -701,5 +701,5 @@ TAUTLINE_PART(testRefused)
   std::fill(rational.types.begin(), rational.types.end(), bezierTriangle);
   CurvedCellFacts facts;
   facts.rational = true;
-  refuses(wording("cells-are-rational"), [&] { curve(rational, 3, {}, facts); });
+  rejects(wording("cells-are-rational"), [&] { curve(rational, 3, {}, facts); });
 }

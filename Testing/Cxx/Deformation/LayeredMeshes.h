@@ -105,7 +105,7 @@ inline LayeredMesh layeredRing(
   return ring;
 }
 
-/// The surface of a cube of n^2 squares a side, seen from its centre: equal angles along edges.
+/// The surface of a cube of n^2 squares a side, seen from its center: equal angles along edges.
 struct CubeDirections
 {
   std::vector<Vec3> normals;
@@ -175,7 +175,7 @@ inline void addLayerCells(
         type, { low + t[0], low + t[2], low + t[1], high + t[0], high + t[2], high + t[1] });
       continue;
     }
-    // The diagonals of the sides start at the smallest number, so that neighbours fit.
+    // The diagonals of the sides start at the smallest number, so that neighbors fit.
     std::sort(t.begin(), t.end());
     for (std::vector<Index> q :
       { std::vector<Index>{ low + t[0], low + t[1], low + t[2], high + t[2] },

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Warp Mesh with curved cells: corners move as those of linear cells, nodes between follow, on the
+// Warp Mesh with curved cells: corners move as in linear cells, nodes between follow, on the
 // boundary by motions of their own, and validity is certified.
 #include "QuadraticMeshes.h"
 #include "Registry.h"
@@ -59,7 +59,8 @@ double radiusOf(const Vec3& p)
 
 constexpr CellType warpedTypes[] = { CellType::Triangle, CellType::Tetrahedron };
 
-/// The inner boundary turns: its nodes stay on their circle, those of the outer one do not move.
+/// The inner boundary turns: its nodes stay on their circle, the nodes of the outer one do not
+/// move.
 TAUTLINE_PART(testRotation)
 {
   for (CellType type : warpedTypes)
@@ -104,7 +105,7 @@ TAUTLINE_PART(testRotation)
         }
       }
       TAUTLINE_CHECK(turned >= (flat ? 32 : 160) && still == turned);
-      // Neighbours have one node on the seam.
+      // Neighbors have one node on the seam.
       for (Index i = 0; i < data.numberOfPoints(); ++i)
       {
         for (Index j = 0; flat && j < i; ++j)
@@ -153,7 +154,7 @@ TAUTLINE_PART(testAffine)
   }
 }
 
-/// Corners are those of the linear mesh.
+/// Corners equal the corners of the linear mesh.
 TAUTLINE_PART(testCorners)
 {
   for (CellType type : warpedTypes)
@@ -225,7 +226,7 @@ TAUTLINE_PART(testFolded)
     vtkIdType, c, validity->GetNumberOfTuples(), counted += validity->GetComponent(c, 0) < 0);
   TAUTLINE_CHECK_EQUAL(counted, filter->GetInverted());
 
-  // Such a mesh is refused as an input.
+  // Such a mesh is rejected as an input.
   messages.clear();
   TAUTLINE_SET(filter, SetInputData(toGrid(moved)), SetMotion(vtkMeshWarp::TRANSFORM),
     SetTransformKind(vtkMeshWarp::TRANSLATION), SetTranslation(0.1, 0, 0), Update());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Warp Mesh: what is refused, by name; boundaries that intersect themselves, and other cells.
+// Warp Mesh: what is rejected, by name; boundaries that intersect themselves, and other cells.
 #include "Registry.h"
 #include "WarpingMeshes.h"
 #include "vtkDataSetSurfaceFilter.h"
@@ -41,13 +41,13 @@ TAUTLINE_PART(testAllKinds)
   }
 }
 
-/// What cannot be warped, and why.
-TAUTLINE_PART(testRefusals)
+/// Unsupported inputs, with the reason.
+TAUTLINE_PART(testRejections)
 {
   vtkNew<vtkMeshWarp> filter;
   Messages messages(filter);
   TAUTLINE_SET(filter, SetTransformKind(vtkMeshWarp::TRANSLATION), SetTranslation(0.1, 0, 0));
-  const auto refused = [&](vtkDataObject* input, const char* text)
+  const auto rejected = [&](vtkDataObject* input, const char* text)
   {
     const Context context(text);
     messages.clear();
@@ -59,43 +59,43 @@ TAUTLINE_PART(testRefusals)
   };
   const MeshData data = blockMesh(CellType::Triangle, 4, 4, 0);
   TAUTLINE_NEW(vtkImageData, image, SetDimensions(3, 3, 3));
-  refused(image, wording("image-data-to-point-set"));
+  rejected(image, wording("image-data-to-point-set"));
   MeshData wrong = TAUTLINE_CHANGED(data, setPoint(6, { 2.5, 2.6, 0 }));
-  refused(toGrid(wrong), wording("run-untangle-mesh-first"));
+  rejected(toGrid(wrong), wording("run-untangle-mesh-first"));
   wrong = TAUTLINE_CHANGED(data, points[7] = std::numeric_limits<double>::quiet_NaN());
-  refused(toGrid(wrong), wording("1-points-have-a-coordinate-that-is"));
+  rejected(toGrid(wrong), wording("1-points-have-a-coordinate-that-is"));
   wrong = TAUTLINE_CHANGED(data, addCell(VTK_POLYGON, { 0, 1, 2, 3, 4 }));
-  refused(toGrid(wrong), wording("1-polygons-polyhedra-or-other-cells-that"));
+  rejected(toGrid(wrong), wording("1-polygons-polyhedra-or-other-cells-that"));
   wrong = TAUTLINE_CHANGED(MeshData(), points = data.points);
   wrong.addCell(VTK_LAGRANGE_TRIANGLE, { 0, 2, 10, 1 });
-  refused(toGrid(wrong), wording("the-vtk-type-69-with-4-nodes"));
+  rejected(toGrid(wrong), wording("the-vtk-type-69-with-4-nodes"));
   wrong = TAUTLINE_CHANGED(MeshData(), points = data.points);
   wrong.addCell(VTK_VERTEX, { 0 });
-  refused(toGrid(wrong), wording("there-is-no-element"));
+  rejected(toGrid(wrong), wording("there-is-no-element"));
   TAUTLINE_NEW(vtkSphereSource, sphere, Update());
-  refused(sphere->GetOutput(), wording("no-boundary"));
+  rejected(sphere->GetOutput(), wording("no-boundary"));
   filter->SetTranslation(0.1, 0, 0.1);
-  refused(toGrid(data), wording("lead-out-of-its-plane"));
+  rejected(toGrid(data), wording("lead-out-of-its-plane"));
   TAUTLINE_SET(filter, SetTransformKind(vtkMeshWarp::ROTATION), SetAxis(0, 0, 0));
-  refused(toGrid(data), wording("the-axis-of-the-motion-has-no"));
+  rejected(toGrid(data), wording("the-axis-of-the-motion-has-no"));
   TAUTLINE_SET(filter, SetTransformKind(vtkMeshWarp::SCALING), SetScaleFactors(1, 0, 1));
-  refused(toGrid(data), wording("a-scale-factor-is-not-positive"));
+  rejected(toGrid(data), wording("a-scale-factor-is-not-positive"));
   TAUTLINE_SET(filter, SetTransformKind(vtkMeshWarp::BENDING), SetAxis(1, 0, 0));
-  refused(toGrid(data), wording("lies-along-the-axis"));
+  rejected(toGrid(data), wording("lies-along-the-axis"));
   filter->SetTransformKind(vtkMeshWarp::MATRIX);
   TAUTLINE_NEW(vtkTransform, mirror, Scale(-1, 1, 1));
   filter->SetTransform(mirror);
-  refused(toGrid(data), wording("mirrors-or-flattens"));
+  rejected(toGrid(data), wording("mirrors-or-flattens"));
 
   // Arrays of displacements.
   filter->SetMotion(vtkMeshWarp::DISPLACEMENT);
   auto grid = toGrid(data);
-  refused(grid, wording("no-array-of-displacements-is-chosen"));
+  rejected(grid, wording("no-array-of-displacements-is-chosen"));
   filter->SetInputArrayToProcess(0, 0, 0, OnPoints, "d");
-  refused(grid, wording("there-is-no-point-array-d-of"));
+  rejected(grid, wording("there-is-no-point-array-d-of"));
   grid->GetPointData()->AddArray(
     arrayOf("d", data.numberOfPoints(), 1, [](Index, int) { return 0; }));
-  refused(grid, wording("the-array-d-has-1-components"));
+  rejected(grid, wording("the-array-d-has-1-components"));
   auto d = arrayOf("d", data.numberOfPoints(), 3,
     [](Index i, int) { return i == 2 || i == 6 || i == 24 ? std::nan("") : 0.01; });
   for (int k = 2; k < 3 * data.numberOfPoints(); k += 3)
@@ -103,7 +103,7 @@ TAUTLINE_PART(testRefusals)
     d->SetValue(k, 0);
   }
   grid->GetPointData()->AddArray(d);
-  refused(grid, wording("the-array-d-is-nan-or-infinite"));
+  rejected(grid, wording("the-array-d-is-nan-or-infinite"));
   TAUTLINE_SET(d, SetComponent(2, 0, 0.01), SetComponent(2, 1, 0.01), SetComponent(24, 0, 0.01),
     SetComponent(24, 1, 0.01));
   messages.clear();
@@ -118,15 +118,15 @@ TAUTLINE_PART(testRefusals)
 
   // Coefficients.
   filter->SetCoefficients(vtkMeshWarp::PER_CELL);
-  refused(grid, wording("no-array-of-coefficients-is-chosen"));
+  rejected(grid, wording("no-array-of-coefficients-is-chosen"));
   filter->SetInputArrayToProcess(3, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "c");
   grid->GetCellData()->AddArray(
     arrayOf("c", data.numberOfCells(), 2, [](Index, int) { return 1; }));
-  refused(grid, wording("the-array-c-has-2-components"));
+  rejected(grid, wording("the-array-c-has-2-components"));
   grid->GetCellData()->AddArray(
     arrayOf("c", data.numberOfCells(), 3, [](Index, int) { return -1; }));
-  refused(grid, wording("cell-0-of-the-mesh-are-not"));
-  // The cell of the input, with a vertex, too.
+  rejected(grid, wording("cell-0-of-the-mesh-are-not"));
+  // The cell of the input, also with a vertex.
   MeshData more = data;
   more.types.insert(more.types.begin(), VTK_VERTEX);
   more.connectivity.insert(more.connectivity.begin(), 0);
@@ -136,9 +136,9 @@ TAUTLINE_PART(testRefusals)
   withVertex->GetPointData()->ShallowCopy(grid->GetPointData());
   const auto values = [](Index i, int) { return i == 0 || i == 4 ? -1 : 1; };
   withVertex->GetCellData()->AddArray(arrayOf("c", more.numberOfCells(), 3, values));
-  refused(withVertex, wording("the-coefficients-of-cell-4-of-the"));
+  rejected(withVertex, wording("the-coefficients-of-cell-4-of-the"));
   filter->SetCoefficients(vtkMeshWarp::PER_REGION);
-  refused(grid, wording("no-array-of-regions-is-chosen"));
+  rejected(grid, wording("no-array-of-regions-is-chosen"));
 
   vtkNew<vtkUnstructuredGrid> empty;
   messages.clear();

@@ -135,7 +135,7 @@ TAUTLINE_PART(testBending)
   }
 }
 
-/// Steps of a transform follow its path; displacements that turn a part do so, too.
+/// Steps of a transform follow its path; and so do displacements that turn a part.
 TAUTLINE_PART(testSteps)
 {
   const MeshData data = holedBlock(CellType::Triangle, 15);
@@ -154,7 +154,7 @@ TAUTLINE_PART(testSteps)
   TAUTLINE_CHECK_EQUAL(filter->GetInverted(), byArc);
   TAUTLINE_CHECK(distance(turned, withPointsOf(data, meshOf(filter))) < 1e-10);
 
-  // Two turns in steps end where none does, for the boundary; what is between is wound up.
+  // Two turns in steps end where none does, for the boundary; the interior is wound up.
   const MeshData wound = [&]
   {
     TAUTLINE_SET(filter, SetMotion(vtkMeshWarp::TRANSFORM), SetSteps(100), SetAngle(720), Update());
@@ -276,7 +276,7 @@ TAUTLINE_PART(testParts)
       return std::find(&data.connectivity[0], &data.connectivity[3], i) != &data.connectivity[3];
     });
 
-  // What stays, stays: on the boundary and inside.
+  // Fixed points stay: on the boundary and inside.
   filter->SetMovedPart(vtkMeshWarp::WHOLE_BOUNDARY);
   filter->SetInputArrayToProcess(2, 0, 0, points, "right");
   moves([&](Index i) { return parts[i] != 0 && data.point(i)[0] < double(n); });
@@ -319,7 +319,7 @@ TAUTLINE_PART(testBoundaryParts)
     TAUTLINE_CHECK_EQUAL(parts.parts, 4);
     TAUTLINE_CHECK((parts.outer == std::vector<char>{ 1, 1, 0, 0 }));
     const std::vector<int> ofSmall = partsOf(small, 5), ofLarge = partsOf(large, 7);
-    // Of two holes of one size that of the smaller block, which is numbered first, is first.
+    // Two holes have one size; the hole of the smaller block, which is numbered first, is first.
     Index wrong = 0;
     for (Index i = 0; i < both.numberOfPoints(); ++i)
     {
@@ -370,7 +370,7 @@ TAUTLINE_PART(testAnimation)
     TAUTLINE_CHECK_EQUAL(
       meshOf(filter)->GetInformation()->Get(vtkDataObject::DATA_TIME_STEP()), time);
     TAUTLINE_CHECK_NEAR(value(filter->GetStatistics(), "Amount"), 0.5 * time, 1e-15);
-    // The matrices are those of the first execution; at rest none are needed.
+    // The matrices come from the first execution; at rest none are needed.
     TAUTLINE_CHECK_EQUAL(filter->GetReused(), time > 0 ? 1 : 0);
   }
   TAUTLINE_CHECK(messages.empty());

@@ -12,7 +12,7 @@ using namespace tautline;
 
 namespace
 {
-/// The numbers of a filter that are those of the whole mesh.
+/// The numbers of a filter that refer to the whole mesh.
 struct Numbers
 {
   vtkIdType inverted, invertedAfterWarp, impossible;
@@ -25,7 +25,7 @@ Numbers numbersOf(vtkMeshWarp* filter)
     filter->GetWorstShape() };
 }
 
-/// The tables of all processes together are those of one, to a relative tolerance.
+/// The tables of all processes together equal the tables of one, to a relative tolerance.
 void checkTables(vtkMeshWarp* serial, vtkMeshWarp* ranks, int rank, double tolerance)
 {
   vtkTable *one = serial->GetHistory(), *here = ranks->GetHistory();
@@ -39,7 +39,7 @@ void checkTables(vtkMeshWarp* serial, vtkMeshWarp* ranks, int rank, double toler
   }
 }
 
-/// @param bound on the distance of the points from those of one process
+/// @param bound on the distance of the points from the result of one process
 template <class Set>
 void testSame(const char* name, vtkMPIController* controller, const MeshData& whole, double bound,
   const Set& set)
@@ -76,7 +76,7 @@ void testSame(const char* name, vtkMPIController* controller, const MeshData& wh
               [&](Index cell) { return size > 2 && rankOf(cell) == 0 ? size - 1 : 1; }),
         other));
   }
-  const Context inner("divided anew");
+  const Context inner("redistributed");
   TAUTLINE_NEW(vtkMeshWarp, filter, SetRedistribute(vtkMeshWarp::KD_TREE));
   far = std::max(far, check(partOf(whole, rank, [](Index) { return 0; }), filter));
   if (rank == 0)
@@ -86,7 +86,7 @@ void testSame(const char* name, vtkMPIController* controller, const MeshData& wh
 }
 
 /**
- * What untangles or optimizes takes another order than one process: all elements are valid, as
+ * Untangling and optimization use another order than one process: all elements are valid, as
  * there, and the points do not depend on how the mesh is cut.
  * @param inverts whether the warp itself inverts elements
  * @param follows whether untangling fails where the motion ends, so that short steps follow
@@ -145,7 +145,7 @@ void testValid(const char* name, vtkMPIController* controller, const MeshData& w
     far =
       std::max(far, check(partOf(whole, rank, cutBy(whole, cut, size), cut == Cut::Slabs), filter));
   }
-  const Context inner("divided anew");
+  const Context inner("redistributed");
   TAUTLINE_NEW(vtkMeshWarp, filter, SetRedistribute(vtkMeshWarp::KD_TREE));
   check(partOf(whole, rank, [](Index) { return 0; }), filter);
   if (rank == 0)
@@ -155,8 +155,8 @@ void testValid(const char* name, vtkMPIController* controller, const MeshData& w
   }
 }
 
-/// Positions of the boundary that former ones span need no solve: norms and products are those of
-/// all processes, also where a matrix is the sum of what they have.
+/// Positions of the boundary that former ones span need no solve: norms and products cover all
+/// processes, also where a matrix is the sum of their parts.
 void testSpanned(vtkMPIController* controller, const MeshData& whole)
 {
   const Context context("spanned");
@@ -195,7 +195,7 @@ void testSpanned(vtkMPIController* controller, const MeshData& whole)
   }
 }
 
-/// The second step of Hybrid, to its minimum, is that of one process to 1e-6.
+/// The second step of Hybrid, to its minimum, equals the result of one process to 1e-6.
 void testConverged(vtkMPIController* controller, const MeshData& whole, double degrees)
 {
   const Context context("converged");
@@ -253,7 +253,7 @@ void testConverged(vtkMPIController* controller, const MeshData& whole, double d
   }
 }
 
-/// What is put together still, with the points of one process: the summary states it.
+/// Motions that still put the mesh together, with the points of one process: the summary states it.
 void testPutTogether(vtkMPIController* controller)
 {
   const Context context("put together");
@@ -277,7 +277,7 @@ void testPutTogether(vtkMPIController* controller)
   TAUTLINE_CHECK(farthest(here, expected) <= 1e-10);
   TAUTLINE_CHECK(farthest(here, whole.points) > 0.1);
   const std::string sentence = "The mesh was put together on the first process: it is a surface in "
-                               "space, or in a plane that is not at right angles to an axis.";
+                               "space, or in a plane that is not perpendicular to an axis.";
   TAUTLINE_CHECK(contains(filter->GetSummary(), sentence));
   // All of it is in one place from the start.
   pointsOf(whole, partOf(whole, rank, all), set, onFirst.Get(), true);
@@ -318,7 +318,7 @@ void testWrong(vtkMPIController* controller, const MeshData& whole)
 void testPieces(vtkMPIController* controller)
 {
   constexpr double same = 1e-10;
-  // Of the biharmonic equation the condition number is the square of that of the harmonic one.
+  // The condition number of the biharmonic equation is the square of the harmonic one's.
   const MeshData planar = blockWithHole(CellType::Triangle);
   const MeshData volume = blockWithHole(CellType::Tetrahedron);
   for (const MeshData* mesh : { &planar, &volume })
@@ -366,7 +366,7 @@ void testPieces(vtkMPIController* controller)
         turn(filter, 20);
         TAUTLINE_SET(filter, SetMethod(vtkMeshWarp::BIHARMONIC), SetSteps(2));
       });
-    // Walls are those of all cells around a point, whichever process has them.
+    // Walls include all cells around a point, whichever process has them.
     testSame("radial basis", controller, *mesh, same, method(vtkMeshWarp::RADIAL_BASIS));
     testSame("rotations", controller, *mesh, same, method(vtkMeshWarp::INVERSE_DISTANCE_ROTATIONS));
     testSame("automatic", controller, *mesh, same, method(vtkMeshWarp::AUTOMATIC));

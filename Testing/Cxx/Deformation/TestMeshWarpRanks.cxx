@@ -78,7 +78,8 @@ void testRanks(int rank, int ranks)
     {
       TAUTLINE_CHECK_NEAR(distance(withPointsOf(data, meshOf(filter)), expected), 0, 1e-10);
     }
-    TAUTLINE_CHECK(contains(filter->GetSummary(), "divided anew among " + std::to_string(ranks)));
+    TAUTLINE_CHECK(contains(filter->GetSummary(),
+      std::string(wording("divided-anew")) + " among " + std::to_string(ranks)));
   }
   filter->RedistributeOff();
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Motions of Warp Mesh to a target on processes: by ids, by the closest points, in the pieces of
-// the mesh or in others; what has lost the order of its points is refused.
+// the mesh or in others; targets that have lost the order of their points are rejected.
 #include "Registry.h"
 #include "WarpingRanks.h"
 
@@ -143,7 +143,7 @@ void testWrongTarget(vtkMPIController* controller, const MeshData& whole, double
     const auto ids = idsOf(of);
     if (rank == size - 1)
     {
-      // A corner, not at the seam, where the other process has the point, too.
+      // A corner, not at the seam, where the other process also has the point.
       vtkIdType far = 0;
       for (vtkIdType i = 0; i < target->GetNumberOfPoints(); ++i)
       {
@@ -160,8 +160,8 @@ void testWrongTarget(vtkMPIController* controller, const MeshData& whole, double
       SetTargetIds(way == Ids ? "number" : nullptr));
     Messages messages(filter);
     filter->Update();
-    TAUTLINE_CHECK(messages.has(way == Ids ? "has 1 values that are no values of the mesh's array"
-        : way == Torn                      ? "Points at different places have the global id"
+    TAUTLINE_CHECK(messages.has(way == Ids ? "has 1 values that do not occur in the mesh's array"
+        : way == Torn                      ? wording("points-at-different-places-have-the-global")
                                            : "coordinates that are NaN or infinite"));
     TAUTLINE_CHECK_EQUAL(meshOf(filter)->GetNumberOfPoints(), 0);
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Motions over time of Warp Mesh on processes: each keeps its piece, and the points are those of
-// one process, from the first time step or from the one before, whatever the order of the requests.
+// Motions over time of Warp Mesh on processes: each keeps its piece, and the points equal the
+// result of one process, from the first time step or from the one before, whatever the order of the
+// requests.
 #include "MovingPieces.h"
 #include "Registry.h"
 #include "vtkCommand.h"
@@ -44,7 +45,7 @@ struct Run
   }
 };
 
-/// What one process finds at a time, without the others.
+/// The result of one process at a time, without the others.
 template <class Set>
 std::vector<double> aloneAt(double time, vtkMPIController* controller, const MeshData& whole,
   double middle, int motion, int start, const Set& set, int* rows = nullptr)
@@ -154,7 +155,7 @@ void testBeginsAgain(vtkMPIController* controller, const MeshData& whole, double
   check(slow);
 }
 
-/// Pieces that are cut anew at a time step are put together; their points need ids.
+/// Pieces that are cut differently at a time step are put together; their points need ids.
 void testOtherPieces(vtkMPIController* controller, const MeshData& whole, double middle)
 {
   const Context context("other pieces");
@@ -198,7 +199,7 @@ void testOtherPieces(vtkMPIController* controller, const MeshData& whole, double
   }
 }
 
-/// A mesh that is put together at all times: in the order of ids, or refused.
+/// A mesh that is put together at all times: in the order of ids, or rejected.
 void testPutTogether(vtkMPIController* controller)
 {
   const Context context("put together");
@@ -213,9 +214,8 @@ void testPutTogether(vtkMPIController* controller)
     run.source->Numbered = true;
     TAUTLINE_CHECK(farthest(run.at(3.0, whole, part), expected) <= Same);
     TAUTLINE_CHECK(farthest(run.at(3.0, whole, part), whole.points) > 0.1);
-    const char* sentence =
-      "The mesh was put together on the first process: neighbouring cells list "
-      "their points in opposite orders";
+    const char* sentence = "The mesh was put together on the first process: neighboring cells list "
+                           "their points in opposite orders";
     TAUTLINE_CHECK(contains(run.filter->GetSummary(), sentence));
     // Its summary stays when nothing but the time changes.
     run.at(2.0, whole, part);
@@ -228,7 +228,7 @@ void testPutTogether(vtkMPIController* controller)
   }
 }
 
-/// What is wrong on one process at a later time is an error on all, which go on afterwards.
+/// An error on one process at a later time is an error on all, which then continue.
 void testWrong(vtkMPIController* controller, const MeshData& whole, double middle)
 {
   const Context context("wrong");
@@ -267,8 +267,8 @@ void testWrong(vtkMPIController* controller, const MeshData& whole, double middl
   TAUTLINE_CHECK(messages.has(wording("the-input-has-no-time-steps")));
 }
 
-/// A process without cells may have no time steps: it takes part in those of the others, also
-/// behind another filter. Others have to have the same.
+/// A process without cells may have no time steps: it takes part in the time steps of the others,
+/// also behind another filter. Others have to have the same.
 void testTimes(vtkMPIController* controller, const MeshData& whole, double middle)
 {
   const Context context("times");
@@ -323,7 +323,7 @@ void testTimes(vtkMPIController* controller, const MeshData& whole, double middl
   Messages messages(run.filter);
   run.filter->UpdateTimeStep(3.0);
   TAUTLINE_CHECK(messages.has("The time steps of process " + std::to_string(size - 1) +
-    " are not those of process 0: give all processes the same ones"));
+    wording("from-the-time-steps-of-process") + "0"));
   TAUTLINE_CHECK_EQUAL(meshOf(run.filter)->GetNumberOfPoints(), 0);
   messages.clear();
   run.source->Times = common;
@@ -368,10 +368,10 @@ void testStop(vtkMPIController* controller, const MeshData& whole, double middle
   run.filter->SetTimeLimit(1e-9);
   run.filter->UpdateTimeStep(2.0);
   TAUTLINE_CHECK(contains(run.filter->GetSummary(), wording("the-time-limit-was-reached")));
-  // The steps after a limited one say so, also if they are not limited themselves.
+  // The steps after a limited one report it, also if they are not limited themselves.
   Run slow(part, middle, vtkMeshWarp::TIME_STEPS, vtkMeshWarp::PREVIOUS_STEP);
   slow.filter->SetTimeLimit(1e-9);
-  const char* sentence = "A time step before this one had reached the time limit";
+  const char* sentence = "An earlier time step reached the time limit";
   slow.filter->UpdateTimeStep(1.0);
   TAUTLINE_CHECK(!contains(slow.filter->GetSummary(), sentence));
   for (const double time : { 2.0, 3.0 })

@@ -164,7 +164,7 @@ void testTimeSteps(bool curved)
         fresh->UpdateTimeStep(2.0);
         TAUTLINE_CHECK(withPointsOf(source->Data, meshOf(filter)).points ==
           withPointsOf(source->Data, meshOf(fresh)).points);
-        // Another motion upstream does, too.
+        // So does another motion upstream.
         source->Degrees = 5;
         source->Modified();
         TAUTLINE_SET(filter, SetAmount(1), UpdateTimeStep(2.0));
@@ -193,7 +193,7 @@ TAUTLINE_PART(testCurvedTimeSteps)
   testTimeSteps(true);
 }
 
-/// Matrices are kept over time; each time is read once; other cells are refused.
+/// Matrices are kept over time; each time is read once; other cells are rejected.
 TAUTLINE_PART(testTimeCosts)
 {
   auto source = movingMesh();
@@ -242,7 +242,7 @@ TAUTLINE_PART(testTimeCosts)
     TAUTLINE_CHECK(meshOf(stepwise)->GetNumberOfPoints() > 0);
   }
 
-  // Another source, made before: its first step counts, not that of the one before.
+  // Another source, made before: its first step counts, not the first step of the previous one.
   auto older = movingMesh();
   older->Degrees = -20;
   auto newer = movingMesh();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The part of the boundary that Warp Mesh moves, shown before it moves: edges or faces of the hole,
 // parts of blocks, what is chosen by arrays, by displacements, by a target; what Warp Mesh would
-// refuse.
+// reject.
 #include "Registry.h"
 #include "WarpingMeshes.h"
 #include "vtkMovingBoundary.h"
@@ -103,7 +103,7 @@ TAUTLINE_PART(testBlocks)
   checkBounds(holes, 3, 24, 0, 0);
 }
 
-/// What is not chosen yet is no error, but a message in the summary; the next choice works.
+/// A missing choice is not an error, but a message in the summary; the next choice works.
 TAUTLINE_PART(testNothingChosen)
 {
   vtkNew<vtkMovingBoundary> filter;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Mesh deformation: what is refused and how, what is reported, and how it is stopped.
+// Mesh deformation: what is rejected and how, what is reported, and how it is stopped.
 
 #include "Registry.h"
 #include "Warping.h"
@@ -36,7 +36,7 @@ TAUTLINE_PART(testMethodClasses)
     TAUTLINE_CHECK_EQUAL(isAnisotropic(e.method), e.anisotropic);
     TAUTLINE_CHECK_EQUAL(untangles(e.method), e.untangles);
   }
-  // Of the coefficients, 4 is a choice of the filter that the kernel does not have.
+  // The choice 4 of the coefficients exists in the filter, not in the kernel.
   const std::set<int> coefficients = { 0, 1, 2, 3, 5 };
   for (int number = -2; number < 2 * count; ++number)
   {
@@ -45,14 +45,14 @@ TAUTLINE_PART(testMethodClasses)
   }
 }
 
-TAUTLINE_PART(testRefused)
+TAUTLINE_PART(testRejected)
 {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const MeshData data = boxInBox(CellType::Triangle, 8, 2);
   const WarpOptions options = withMethod(WarpMethod::Hybrid);
   TAUTLINE_CHECK_THROWS(warped(data, TAUTLINE_PLACE(p[0] == 0 ? nan : 0.0, 0, 0), options),
     wording("displacements-of-9-prescribed-points-are-nan"));
-  // Of points that are not prescribed they are not read.
+  // They are not read for points that are not prescribed.
   const std::vector<char> boundary = Mesh(data.view()).boundary().isBoundaryPoint;
   auto d = collect<double>(data.points.size(),
     [&](std::size_t i) { return boundary[i / 3] ? (i % 3 == 0 ? 0.25 : 0.0) : nan; });
@@ -95,33 +95,34 @@ TAUTLINE_PART(testRefused)
     }
   }
 
-  const auto refused = [&](const auto& change, const std::string& text)
+  const auto rejected = [&](const auto& change, const std::string& text)
   {
     WarpOptions wrong;
     change(wrong);
     TAUTLINE_CHECK_THROWS(warped(data, nowhere, wrong), text);
   };
-  refused([](WarpOptions& o) { o.method = WarpMethod(13); }, "no such method");
-  refused([](WarpOptions& o) { o.coefficients = WarpCoefficients(4); }, "no such choice");
-  refused([](WarpOptions& o) { o.steps = -1; }, "number of steps");
-  refused([](WarpOptions& o) { o.maximumSteps = 0; }, "number of steps");
-  refused([](WarpOptions& o) { o.tolerance = 0; }, "tolerance");
-  refused([](WarpOptions& o) { o.poissonRatio = 0.5; }, "Poisson");
-  refused([](WarpOptions& o) { o.stiffeningFactor = 1; }, "stiffening");
-  refused([](WarpOptions& o) { o.untanglingBeta = -1; }, "Beta");
-  refused([](WarpOptions& o) { o.maximumSeconds = -1; }, "time limit");
-  refused([](WarpOptions& o) { o.coefficients = WarpCoefficients::PerCell; }, "there are none");
+  rejected([](WarpOptions& o) { o.method = WarpMethod(13); }, "Unknown method");
+  rejected([](WarpOptions& o) { o.coefficients = WarpCoefficients(4); }, "Unknown choice");
+  rejected([](WarpOptions& o) { o.steps = -1; }, "number of steps");
+  rejected([](WarpOptions& o) { o.maximumSteps = 0; }, "number of steps");
+  rejected([](WarpOptions& o) { o.tolerance = 0; }, "tolerance");
+  rejected([](WarpOptions& o) { o.poissonRatio = 0.5; }, "Poisson");
+  rejected([](WarpOptions& o) { o.stiffeningFactor = 1; }, "stiffening");
+  rejected([](WarpOptions& o) { o.untanglingBeta = -1; }, "Beta");
+  rejected([](WarpOptions& o) { o.maximumSeconds = -1; }, "time limit");
+  rejected(
+    [](WarpOptions& o) { o.coefficients = WarpCoefficients::PerCell; }, "Coefficients per cell");
   for (const SymmetricTensor& t :
     { SymmetricTensor{ -1, 1, 1, 0, 0, 0 }, SymmetricTensor{ 1, 1, 1, 2, 0, 0 },
       SymmetricTensor{ 0, 0, 0, 0, 0, 0 }, SymmetricTensor{ nan, 1, 1, 0, 0, 0 } })
   {
-    refused([&](WarpOptions& o)
+    rejected([&](WarpOptions& o)
       { TAUTLINE_SET(o, coefficients = WarpCoefficients::Manual, tensor = t); },
       "positive semidefinite");
   }
   std::vector<double> tensors(6 * data.numberOfCells(), 1.0);
   tensors[6 * 7 + 3] = 3;
-  refused([&](WarpOptions& o)
+  rejected([&](WarpOptions& o)
     { TAUTLINE_SET(o, coefficients = WarpCoefficients::PerCell, tensors = tensors.data()); },
     "The coefficients of cell 7");
 }

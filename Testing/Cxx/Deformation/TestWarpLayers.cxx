@@ -67,7 +67,7 @@ TAUTLINE_PART(testWalls)
   }
   TAUTLINE_CHECK_NEAR(area, 16, 1e-12);
 
-  // Right triangles of sides 3 and 4; a point whose neighbours are not prescribed does not turn.
+  // Right triangles of sides 3 and 4; a point whose neighbors are not prescribed does not turn.
   TAUTLINE_LET(MeshData, triangle, addPoints({ { 0, 0, 0 }, { 3, 0, 0 }, { 0, 4, 0 } }),
     addCell(CellType::Triangle, { 0, 1, 2 }));
   const double away[9] = { 1, 2, 0, 0, 0, 0, 0, 0, 0 };

@@ -332,7 +332,7 @@ TAUTLINE_PART(testSteps)
   TAUTLINE_CHECK(stopped.amount <= small.amount);
   TAUTLINE_CHECK_EQUAL(stopped.invertedAfter, 0);
 
-  // The way is that of the turn, not the chord: the box keeps its size on it.
+  // The path follows the rotation, not the chord: the box keeps its size on it.
   TAUTLINE_SET(few, steps = 0, method = WarpMethod::Femwarp, maximumSteps = 100);
   const WarpResult part = warped(data, turnedBox(150, true), few);
   TAUTLINE_CHECK(part.amount > 0.1 && part.amount < 1);
@@ -365,7 +365,7 @@ TAUTLINE_PART(testSteps)
   TAUTLINE_CHECK(chord.amount == 1 && distance(chord.points, inSteps.points) > 1e-3);
   few.steps = 0;
 
-  // Affine motions are exact in steps, too; and so is the end of the way.
+  // Affine motions are also exact in steps, and so is the end of the path.
   for (const int steps : { 0, 3 })
   {
     few.steps = steps;

@@ -213,7 +213,7 @@ void testInvariances(CellType type)
   }
 }
 
-/// Centres that are equally bad, by a symmetry: rounding does not choose among them.
+/// Centers that are equally bad, by a symmetry: rounding does not choose among them.
 TAUTLINE_PART(testTies)
 {
   constexpr Index n = 16;
@@ -404,7 +404,7 @@ TAUTLINE_PART(testWeights)
   testFourNeighbors(1, 3, 2, 0.5);
   testFourNeighbors(1e-5, 3e-5, 2, 0.5); // the weights do not account for stretching
   testFourNeighbors(1, 1e4, 2, 0.5);
-  // On a grid all weights are the same: the mean of the neighbours, by iteration.
+  // On a grid all weights are the same: the mean of the neighbors, by iteration.
   Problem problem = boundaryProblem(blockMesh(CellType::Triangle, 8, 8, 0));
   problem.prescribe([](const Vec3& p) { return wave(p, 8); });
   std::vector<double> u = problem.displacement;

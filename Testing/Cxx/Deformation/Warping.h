@@ -15,7 +15,7 @@ namespace tautline
 {
 using Field = std::function<Vec3(const Vec3&)>;
 
-/// A displacement at every point; only those of prescribed points may count.
+/// A displacement at every point; only displacements of prescribed points may count.
 inline std::vector<double> displacements(const MeshData& data, const Field& motion)
 {
   std::vector<double> result(data.points.size());
@@ -103,7 +103,7 @@ inline MeshData boxInBox(CellType type, Index n, Index inner, double amplitude =
   return data;
 }
 
-/// What is on the inner box: everything well inside of the outer one that is prescribed.
+/// The points on the inner box: all prescribed points well inside the outer one.
 inline bool onInnerBox(const Vec3& p, bool flat)
 {
   constexpr double near = 0.4;

@@ -35,7 +35,7 @@ inline void turn(vtkMeshWarp* filter, double angle)
   TAUTLINE_SET(filter, SetTransformKind(vtkMeshWarp::ROTATION), SetAngle(angle));
 }
 
-/// What one process finds, without the others.
+/// The result of one process, without the others.
 template <class Set>
 std::vector<double> alone(
   vtkMPIController* controller, const MeshData& whole, const Set& set, vtkMeshWarp* filter)

@@ -58,7 +58,7 @@ void checkDomain(int index)
   const auto known = ExactSize.find(info.name);
   TAUTLINE_CHECK(known == ExactSize.end() || std::abs(size / known->second - 1.0) < 1e-9);
 
-  // the marked points are exactly those of the boundary of the mesh
+  // the marked points are exactly the boundary points of the mesh
   std::vector<double> points(static_cast<std::size_t>(3 * mesh->GetNumberOfPoints()));
   std::vector<Index> offsets = { 0 }, nodes;
   std::vector<unsigned char> types;
@@ -104,7 +104,7 @@ void checkDomain(int index)
 
 void checkMotion()
 {
-  // the centre of the moved cylinder and bar; the ends of the bent bar; the bore's mouths stay
+  // the center of the moved cylinder and bar; the ends of the bent bar; the bore's mouths stay
   const Vec3 d = domainDisplacement("cylinder-diagonal", { 0.8, 0.65, 0 }, 2, 0.5);
   TAUTLINE_CHECK(d == (Vec3{ 0.3, 0.05, 0 }));
   TAUTLINE_CHECK(domainDisplacement("cylinder", { 0, 0, 0 }, 1, 1.0)[0] == 0.0);
@@ -247,7 +247,7 @@ void checkMissingMeshers()
   TAUTLINE_CHECK(contains(errors->GetErrorMessage(), wording("without-the-module-meshing")));
 }
 
-/// Sizes that no memory holds are refused before anything is allocated.
+/// Sizes that no memory holds are rejected before anything is allocated.
 void checkSizes()
 {
   constexpr Index Cells = Index{ 1 } << 50;
@@ -273,13 +273,13 @@ void checkSizes()
   checkDomainSize(1e5, DomainKind::Solid);
 }
 
-/// Numbers of extreme size are refused by name, by the source and by the kernel; nothing changes.
+/// Numbers of extreme size are rejected by name, by the source and by the kernel; nothing changes.
 void checkExtremes()
 {
   TAUTLINE_NEW(vtkDomainSource, source, SetDomainByName("square"));
   vtkNew<vtkTest::ErrorObserver> errors;
   source->AddObserver(vtkCommand::ErrorEvent, errors);
-  const auto refuses = [&](const char* name, const std::function<void()>& set)
+  const auto rejects = [&](const char* name, const std::function<void()>& set)
   {
     errors->Clear();
     set();
@@ -290,16 +290,16 @@ void checkExtremes()
   for (const double extreme : { 1e-150, 1e150, 0.0, -1.0, std::nan(""), infinity })
   {
     const Context context(std::to_string(extreme));
-    refuses(wording("elementsize-is"), [&] { source->SetElementSize(extreme); });
-    refuses(wording("aspectratio-is"), [&] { source->SetAspectRatio(extreme); });
+    rejects(wording("elementsize-is"), [&] { source->SetElementSize(extreme); });
+    rejects(wording("aspectratio-is"), [&] { source->SetAspectRatio(extreme); });
     const bool tiny = extreme >= 0.0 && extreme < 1.0;
     if (!tiny)
     {
-      refuses(wording("layerwidth-is"), [&] { source->SetLayerWidth(extreme); });
+      rejects(wording("layerwidth-is"), [&] { source->SetLayerWidth(extreme); });
     }
     if (!tiny && extreme != -1.0)
     {
-      refuses(wording("amount-is"), [&] { source->SetAmount(extreme); });
+      rejects(wording("amount-is"), [&] { source->SetAmount(extreme); });
     }
     TAUTLINE_CHECK_THROWS(structuredSquare(extreme, 1.0, 0.2), wording("whole-elements"));
     TAUTLINE_CHECK_THROWS(structuredSquare(0.1, extreme, 0.2),
@@ -309,8 +309,8 @@ void checkExtremes()
     TAUTLINE_CHECK_THROWS(
       solidBoundary("sphere", extreme), wording("the-spacing-of-a-boundary-is"));
   }
-  refuses(wording("layerwidth-is"), [&] { source->SetLayerWidth(-1e-150); });
-  // What is inside: no layer, and one that is narrower than any element.
+  rejects(wording("layerwidth-is"), [&] { source->SetLayerWidth(-1e-150); });
+  // Within the limits: no layer, and one that is narrower than any element.
   source->Update();
   TAUTLINE_CHECK_EQUAL(source->GetOutput()->GetNumberOfCells(), vtkIdType(2 * 14 * 14));
   for (const double width : { 0.0, 1e-150 })

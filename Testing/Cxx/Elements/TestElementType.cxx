@@ -56,7 +56,7 @@ vtkSmartPointer<vtkCell> makeCell(const CellKind& kind, const ElementType& eleme
   return cell;
 }
 
-/// VTK's parametric coordinates of a place: those of the pyramid with 19 nodes are of the pyramid
+/// VTK's parametric coordinates of a place: the pyramid with 19 nodes uses the pyramid
 /// between the planes t = 1/2 and t = 1.
 Vec3 parametric(const CellKind& kind, const Vec3& at)
 {
@@ -240,9 +240,9 @@ TAUTLINE_PART(testRejected)
   const auto built = [&](const std::vector<Vec3>& nodes, const ElementOrders& orders)
   { return messageOf([&] { ElementType(ElementShape::Triangle, orders, nodes); }); };
   const std::vector<Vec3> line = { { 0, 0, 0 }, { 0.5, 0, 0 }, { 1, 0, 0 } };
-  TAUTLINE_CHECK(contains(built(line, { 1, 1, 0 }), "give their reference coordinates"));
+  TAUTLINE_CHECK(contains(built(line, { 1, 1, 0 }), "reference coordinates"));
   TAUTLINE_CHECK(contains(built(line, { 2, 2, 0 }), "has 6 nodes, not 3"));
-  TAUTLINE_CHECK(contains(built(line, { 1, 2, 0 }), "give equal orders"));
+  TAUTLINE_CHECK(contains(built(line, { 1, 2, 0 }), "equal orders"));
 }
 
 TAUTLINE_PART(testThreads)

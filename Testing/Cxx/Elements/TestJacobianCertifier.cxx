@@ -222,7 +222,7 @@ TAUTLINE_PART(testRandomSolid)
   testRandom(ElementType(ElementShape::Pyramid, { 2, 2, 2 }, nodes), 0.1, 30, "pyramid 14");
 }
 
-/// Of order 3, with one node moved along an axis until the element folds.
+/// An element of order 3, with one node moved along an axis until the element folds.
 TAUTLINE_PART(testHexahedronOfOrder3)
 {
   const ElementType& type = ElementType::ofVtk(VTK_LAGRANGE_HEXAHEDRON, 64);
@@ -321,7 +321,7 @@ TAUTLINE_PART(testBadNumbers)
   }
 }
 
-/// A flat element of a large aspect ratio is valid, though rounding errors are those of its length.
+/// A flat element of a large aspect ratio is valid, though rounding errors scale with its length.
 TAUTLINE_PART(testStretched)
 {
   const ElementType& type = ElementType::ofVtk(VTK_QUADRATIC_TETRA, 10);

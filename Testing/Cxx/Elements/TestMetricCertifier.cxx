@@ -182,7 +182,7 @@ ElementSet cubeHoles()
 }
 }
 
-/// A straight element has the same value everywhere, that of its corners.
+/// A straight element has the same value everywhere as at its corners.
 TAUTLINE_PART(testStraight)
 {
   const double tau = 2 / std::sqrt(3.0), squares = 1 + 1 / 3.0 + 4 / 3.0;

@@ -70,7 +70,7 @@ TAUTLINE_PART(testKnown)
 TAUTLINE_PART(testCulprit)
 {
   MeshData data = blockMesh(CellType::Triangle, 8, 8, 0);
-  const Index point = 4 + 9 * 4; // the centre moves next to an edge opposite to it
+  const Index point = 4 + 9 * 4; // the center moves next to an edge opposite to it
   data.setPoint(point, { 4.999, 4.4, 0 });
   const Mesh mesh(data.view());
   TAUTLINE_NEW(
@@ -107,7 +107,7 @@ TAUTLINE_PART(testCulprit)
 
 TAUTLINE_PART(testOthers)
 {
-  // Elasticity, blocks, and what is refused.
+  // Elasticity, blocks, and what is rejected.
   TAUTLINE_NEW(vtkMultiBlockDataSet, blocks,
     SetBlock(0, toGrid(blockMesh(CellType::Tetrahedron, 3, 3, 3))),
     SetBlock(1, toGrid(blockMesh(CellType::Hexahedron, 3, 3, 3))));

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Solve PDE, Condition Estimator and Solver Study on processes that divide the mesh anew: the
-// results are those of one process, at the points and in the cells of the pieces, however these are
-// cut; messages name the cells of the pieces, and what one process refuses all refuse.
+// Solve PDE, Condition Estimator and Solver Study on processes that redistribute the mesh: the
+// results equal the results of one process, at the points and in the cells of the pieces, however
+// these are cut; messages name the cells of the pieces, and an error of one process is an error of
+// all.
 #include "Registry.h"
 #include "ThreadRanks.h"
 #include "VtkMeshes.h"
@@ -22,9 +23,9 @@ vtkMPIController* processes = nullptr;
 
 std::string sentence(int how)
 {
-  return how == vtkEllipticAlgorithm::NO_REDISTRIBUTION
-    ? "Seconds"
-    : "The mesh was divided anew among " + std::to_string(processes->GetNumberOfProcesses()) +
+  return how == vtkEllipticAlgorithm::NO_REDISTRIBUTION ? "Seconds"
+                                                        : std::string("The mesh was ") +
+      wording("divided-anew") + " among " + std::to_string(processes->GetNumberOfProcesses()) +
       " processes" + (how == vtkEllipticAlgorithm::PT_SCOTCH ? " by PT-Scotch." : ".");
 }
 
@@ -91,7 +92,7 @@ std::vector<double> arrayOf(
   return values;
 }
 
-/// What is here is within a tolerance of the largest value of what is expected.
+/// The local values are within a tolerance, relative to the largest expected value.
 void checkSame(
   const std::vector<double>& here, const std::vector<double>& expected, double tolerance)
 {
@@ -115,7 +116,7 @@ struct Compared
   double tolerance;
 };
 
-/// On one process, and on all with the mesh cut in several ways and divided anew.
+/// On one process, and on all with the mesh cut in several ways and redistributed.
 template <class Filter>
 void testFilter(const char* name, const MeshData& whole, const Set<Filter>& set,
   const std::vector<Compared>& arrays,
@@ -277,7 +278,7 @@ void testConditions()
       TAUTLINE_CHECK_RELATIVE(filter->GetCondition(), serial->GetCondition(), ofCondition);
       TAUTLINE_CHECK_RELATIVE(
         filter->GetPreconditionedCondition(), serial->GetPreconditionedCondition(), ofCondition);
-      // The elements that are named are those of the pieces.
+      // The named elements belong to the pieces.
       const std::string summary = filter->GetSummary();
       const int how = filter->GetRedistribute();
       if (how == vtkEllipticAlgorithm::NO_REDISTRIBUTION)
@@ -343,7 +344,7 @@ void testSpaces()
 
 //------------------------------------------------------------------------------
 /// Messages are those without redistribution, on all processes, and none waits.
-void testRefusals()
+void testRejections()
 {
   const int rank = processes->GetLocalProcessId(), size = processes->GetNumberOfProcesses();
   const MeshData whole = blockMesh(CellType::Triangle, 6, 6, 0);
@@ -364,7 +365,7 @@ void testRefusals()
     vtkNew<vtkEllipticSolver> filter;
     Messages messages(filter);
     filter->SetRedistribute(how);
-    const auto refused = [&](const RankPart& piece, const std::string& text)
+    const auto rejected = [&](const RankPart& piece, const std::string& text)
     {
       const Context inner(text);
       messages.clear();
@@ -372,12 +373,12 @@ void testRefusals()
       TAUTLINE_CHECK(messages.has(text));
       TAUTLINE_CHECK_EQUAL(outputOf(filter)->GetNumberOfCells(), 0);
     };
-    refused(part, wording("in-process-0-2-elements-the-first"));
+    rejected(part, wording("in-process-0-2-elements-the-first"));
     filter->SetSourceType(vtkEllipticSolver::EXPRESSION);
     filter->SetSourceExpression("1/((x - 6) + (y - 6))"); // at the last point only
-    refused(good, wording("is-not-finite-at-point"));
+    rejected(good, wording("is-not-finite-at-point"));
     TAUTLINE_SET(filter, SetSourceExpression("x"), SetFixedPart(vtkEllipticSolver::ONLY_CHOSEN));
-    refused(good, wording("without-a-fixed-point"));
+    rejected(good, wording("without-a-fixed-point"));
     filter->SetFixedPart(vtkEllipticSolver::WHOLE_BOUNDARY);
     messages.clear();
     TAUTLINE_SET(filter, SetInputData(gridOf(good)), Update());
@@ -398,7 +399,7 @@ TAUTLINE_TEST(TestDividedSolvers)
   TAUTLINE_RUN(testTime());
   TAUTLINE_RUN(testConditions());
   TAUTLINE_RUN(testSpaces());
-  TAUTLINE_RUN(testRefusals());
+  TAUTLINE_RUN(testRejections());
   vtkMultiProcessController::SetGlobalController(nullptr);
   controller->Finalize();
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Boundary value problems: orders of convergence against manufactured solutions, exactness for
 // linear fields, plane strain and plane stress against a known solution, stresses, parts left free,
-// threads, whatever is refused.
+// threads, whatever is rejected.
 #include "Blocks.h"
 #include "Registry.h"
 #include "tautline/Elliptic/EllipticSystem.h"
@@ -439,7 +439,7 @@ MeshData twoParts(CellType type)
   return data;
 }
 
-TAUTLINE_PART(testRefusals)
+TAUTLINE_PART(testRejections)
 {
   const auto make = [](const MeshData& data, const EllipticProblem& problem)
   {
@@ -453,7 +453,7 @@ TAUTLINE_PART(testRefusals)
 
   // Elements.
   data = good;
-  data.setPoint(6, data.point(6) + Vec3{ 1.2, 1.1, 0 }); // across its neighbours
+  data.setPoint(6, data.point(6) + Vec3{ 1.2, 1.1, 0 }); // across its neighbors
   TAUTLINE_CHECK_THROWS(make(data, {}), wording("inverted-against-the-rest"));
   data = good;
   std::swap(data.connectivity[3 * 5], data.connectivity[3 * 5 + 1]);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Boundary value problems on a mesh spread over MPI ranks: the solution, its derivatives, norms,
-// steps in time and the study of solvers are those of the whole mesh in one process; what one rank
-// rejects all reject. Runs on any number of ranks.
+// steps in time and the study of solvers equal the results of the whole mesh in one process; an
+// error of one rank is an error of all. Runs on any number of ranks.
 #include "QuadraticMeshes.h"
 #include "Registry.h"
 #include "tautline/Elliptic/ErrorNorms.h"
@@ -163,7 +163,7 @@ void testSolutions(
     for (int k = 0; k < size; ++k)
     {
       TAUTLINE_CHECK_NEAR(solution.gradients[size * i + k],
-        expected.gradients[size * share.cells[i] + k], 1e-8); // of ghosts, too
+        expected.gradients[size * share.cells[i] + k], 1e-8); // also of ghosts
     }
   }
   const auto zero = [](const Vec3&, double*, double*) {};
@@ -184,12 +184,12 @@ void testSolutions(
 }
 
 //------------------------------------------------------------------------------
-void testRefusals(MPI_Comm comm)
+void testRejections(MPI_Comm comm)
 {
   int rank = 0, ranks = 1;
   MPI_Comm_rank(comm, &rank);
   MPI_Comm_size(comm, &ranks);
-  const auto refused = [&](const MeshData& whole, EllipticProblem problem, const std::string& text)
+  const auto rejected = [&](const MeshData& whole, EllipticProblem problem, const std::string& text)
   {
     const Share share(comm, whole, false);
     const Mesh mesh(share.data.view());
@@ -198,7 +198,7 @@ void testRefusals(MPI_Comm comm)
     try
     {
       const EllipticSystem system(mesh, problem, share.part);
-      TAUTLINE_CHECK(!"refused");
+      TAUTLINE_CHECK(!"rejected");
     }
     catch (const Error& error)
     {
@@ -212,25 +212,25 @@ void testRefusals(MPI_Comm comm)
   const MeshData good = blockMesh(CellType::Triangle, 5, 5, 0);
   MeshData data = good;
   std::swap(data.connectivity[0], data.connectivity[1]);
-  refused(data, {}, wording("inverted-against-the-rest"));
-  refused(TAUTLINE_CHANGED(good, addCell(3, { 0, 1 })), {}, wording("1-cells-are-not-triangles"));
-  refused(MeshData(), {}, wording("no-cells"));
+  rejected(data, {}, wording("inverted-against-the-rest"));
+  rejected(TAUTLINE_CHANGED(good, addCell(3, { 0, 1 })), {}, wording("1-cells-are-not-triangles"));
+  rejected(MeshData(), {}, wording("no-cells"));
   TAUTLINE_LET(EllipticProblem, problem, source[0] = std::numeric_limits<double>::quiet_NaN());
-  refused(good, problem, "source f");
+  rejected(good, problem, "source f");
   problem = {};
   problem.pde = Pde::Elasticity;
   problem.source = { 0, 0, 1 };
-  refused(good, problem, wording("out-of-the-plane"));
+  rejected(good, problem, wording("out-of-the-plane"));
   // Bent where one rank's part ends: each part is flat, the mesh is not.
   problem.source = { 0, 0, 0 };
   data = good;
   data.transform([](const Vec3& p) { return p[0] > 3 ? Vec3{ 3, p[1], p[0] - 3 } : p; });
-  refused(data, problem, wording("surface-in-space"));
+  rejected(data, problem, wording("surface-in-space"));
   // Nothing fixed: no part of any rank is held. One point fixed on one rank holds them all.
   std::vector<unsigned char> fixed(good.numberOfPoints(), 0);
   problem = {};
   problem.fixed = fixed.data();
-  refused(good, problem, wording("without-a-fixed-point"));
+  rejected(good, problem, wording("without-a-fixed-point"));
   const Share share(comm, good, true);
   const Mesh mesh(share.data.view());
   fixed[0] = rank == ranks - 1;
@@ -250,6 +250,6 @@ TAUTLINE_TEST(TestEllipticRanks)
   TAUTLINE_RUN(testSolutions(comm, CellType::Hexahedron, Pde::Elasticity, false, true));
   TAUTLINE_RUN(testSolutions(comm, CellType::Triangle, Pde::Elasticity, true, false, true));
   TAUTLINE_RUN(testSolutions(comm, CellType::Tetrahedron, Pde::Poisson, false, true, true));
-  TAUTLINE_RUN(testRefusals(comm));
+  TAUTLINE_RUN(testRejections(comm));
   MPI_Finalize();
 }

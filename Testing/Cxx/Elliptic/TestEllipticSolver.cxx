@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Solve PDE: known solutions of problems described in every way, blocks, partitions, refusals.
+// Solve PDE: known solutions of problems described in every way, blocks, partitions, rejections.
 #include "Registry.h"
 #include "VtkMeshes.h"
 #include "vtkConditionEstimator.h"
@@ -421,7 +421,7 @@ TAUTLINE_PART(testBlocks)
 }
 
 //------------------------------------------------------------------------------
-void refuses(vtkEllipticSolver* filter, const std::string& text)
+void rejects(vtkEllipticSolver* filter, const std::string& text)
 {
   const Context context(text);
   Messages messages(filter);
@@ -431,7 +431,7 @@ void refuses(vtkEllipticSolver* filter, const std::string& text)
   TAUTLINE_CHECK_EQUAL(mesh->GetNumberOfPoints(), 0);
 }
 
-TAUTLINE_PART(testRefusals)
+TAUTLINE_PART(testRejections)
 {
   const MeshData data = block(CellType::Triangle, 4);
   const vtkIdType points = data.numberOfPoints();
@@ -441,17 +441,17 @@ TAUTLINE_PART(testRefusals)
     GetCellData()->AddArray(arrayOf("onCells", data.numberOfCells(), { 1 })));
   TAUTLINE_NEW(
     vtkEllipticSolver, filter, SetInputData(grid), SetSourceType(vtkEllipticAlgorithm::ARRAY));
-  refuses(filter, wording("no-array-is-chosen-to-take-the"));
+  rejects(filter, wording("no-array-is-chosen-to-take-the"));
   filter->SetInputArrayToProcess(1, 0, 0, Points, "absent");
-  refuses(filter, wording("there-is-no-point-array-absent-to"));
+  rejects(filter, wording("there-is-no-point-array-absent-to"));
   filter->SetInputArrayToProcess(1, 0, 0, Points, "nan");
-  refuses(filter, wording("the-array-nan-of-the-source-is"));
+  rejects(filter, wording("the-array-nan-of-the-source-is"));
   filter->SetInputArrayToProcess(1, 0, 0, Points, "vector");
-  refuses(filter, wording("has-3-components-one-is-expected"));
+  rejects(filter, wording("has-3-components-one-is-expected"));
   filter->SetInputArrayToProcess(1, 0, 0, Cells, "onCells");
-  refuses(filter, wording("is-on-cells-one-on-points-is"));
+  rejects(filter, wording("is-on-cells-one-on-points-is"));
   filter->SetSourceType(vtkEllipticAlgorithm::EXPRESSION);
-  refuses(filter, wording("the-expression-of-the-source-is-empty"));
+  rejects(filter, wording("the-expression-of-the-source-is-empty"));
   const std::array<std::array<const char*, 2>, 7> wrong = { {
     { "sin(x", "Mismatched brackets" },
     { "x*", "is not understood" },
@@ -464,51 +464,51 @@ TAUTLINE_PART(testRefusals)
   for (const auto& pair : wrong)
   {
     filter->SetSourceExpression(pair[0]);
-    refuses(filter, pair[1]);
+    rejects(filter, pair[1]);
   }
   TAUTLINE_SET(filter, SetEquation(vtkEllipticAlgorithm::ELASTICITY), SetSourceExpression("x"));
-  refuses(filter, wording("is-a-number-a-vector-is-expected"));
+  rejects(filter, wording("is-a-number-a-vector-is-expected"));
   TAUTLINE_SET(filter, SetPoissonRatio(0.5), SetSourceType(vtkEllipticAlgorithm::CONSTANT));
-  refuses(filter, "Poisson");
+  rejects(filter, "Poisson");
   TAUTLINE_SET(filter, SetEquation(vtkEllipticAlgorithm::POISSON), SetPETScOptions("-nonsense 3"));
-  refuses(filter, "-nonsense");
+  rejects(filter, "-nonsense");
   filter->SetPETScOptions("-pc_type nonsense");
-  refuses(filter, "nonsense");
+  rejects(filter, "nonsense");
   TAUTLINE_SET(filter, SetPETScOptions(""), SetFixedPart(vtkEllipticAlgorithm::ONLY_CHOSEN));
-  refuses(filter, wording("without-a-fixed-point"));
+  rejects(filter, wording("without-a-fixed-point"));
   filter->SetFixedPart(vtkEllipticAlgorithm::PART_OF_BOUNDARY);
-  refuses(filter, wording("the-expression-of-the-fixed-part-of"));
+  rejects(filter, wording("the-expression-of-the-fixed-part-of"));
   filter->SetFixedPart(vtkEllipticAlgorithm::WHOLE_BOUNDARY);
   filter->SetSourceValue(std::numeric_limits<double>::infinity());
-  refuses(filter, wording("not-a-finite-number"));
+  rejects(filter, wording("not-a-finite-number"));
   TAUTLINE_SET(filter, SetSourceValue(1), SetEquation(vtkEllipticAlgorithm::ELLIPTIC),
     SetInputArrayToProcess(3, 0, 0, Cells, "onCells"));
-  refuses(filter, wording("has-1-components-6-or-9-are"));
+  rejects(filter, wording("has-1-components-6-or-9-are"));
   filter->SetInputArrayToProcess(3, 0, 0, Points, "vector");
-  refuses(filter, wording("is-on-points-one-on-cells-is"));
+  rejects(filter, wording("is-on-points-one-on-cells-is"));
   TAUTLINE_SET(filter, SetEquation(vtkEllipticAlgorithm::POISSON), SetOmega(2.5),
     SetPreconditioner(vtkEllipticSolver::SSOR));
-  refuses(filter, wording("between-0-and-2"));
+  rejects(filter, wording("between-0-and-2"));
   filter->SetOmega(1);
 
   MeshData inverted = TAUTLINE_CHANGED(data, setPoint(6, { 3.2, 3.1, 0 }));
   filter->SetInputData(toGrid(inverted));
-  refuses(filter, "inverted");
+  rejects(filter, "inverted");
   filter->SetInputData(toGrid(block(CellType::Triangle, 1)));
-  refuses(filter, "free");
+  rejects(filter, "free");
   MeshData notFinite = data;
   notFinite.setPoint(6, { std::numeric_limits<double>::quiet_NaN(), 0, 0 });
   filter->SetInputData(toGrid(notFinite));
-  refuses(filter, "finite");
+  rejects(filter, "finite");
   TAUTLINE_NEW(vtkUnstructuredGrid, lines, SetPoints(toPoints(data)));
   const vtkIdType ends[] = { 0, 1 };
   lines->InsertNextCell(VTK_LINE, 2, ends);
   filter->SetInputData(lines);
-  refuses(filter, wording("the-mesh-has-no-cells-finite-elements"));
+  rejects(filter, wording("the-mesh-has-no-cells-finite-elements"));
   const vtkIdType corners[] = { 0, 1, 6, 7, 5 };
   auto polygon = TAUTLINE_CHANGED(toGrid(data), InsertNextCell(VTK_POLYGON, 5, corners));
   filter->SetInputData(polygon);
-  refuses(filter, wording("1-cells-are-not-triangles"));
+  rejects(filter, wording("1-cells-are-not-triangles"));
   // and after all that it works
   filter->SetInputData(grid);
   TAUTLINE_CHECK_EQUAL(values(solved(filter)).size(), std::size_t(points));

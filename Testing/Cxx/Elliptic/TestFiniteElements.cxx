@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Stiffness matrices and load vectors: known small matrices, patch test, null spaces, invariances,
-// symmetry, threads, degenerate and inverted elements, and whatever is refused.
+// symmetry, threads, degenerate and inverted elements, and whatever is rejected.
 #include "Blocks.h"
 #include "Registry.h"
 #include "tautline/Elliptic/FiniteElements.h"
@@ -330,7 +330,7 @@ TAUTLINE_PART(testInvariance)
 //------------------------------------------------------------------------------
 TAUTLINE_PART(testSurface)
 {
-  // A cylinder of triangles or quadrilaterals: its matrix is that of the plane.
+  // A cylinder of triangles or quadrilaterals: its matrix equals the plane's.
   for (CellType type : { CellType::Triangle, CellType::Quadrilateral })
   {
     MeshData flat = blockMesh(type, 6, 3, 0), bent = flat;
@@ -477,7 +477,7 @@ TAUTLINE_PART(testBadElements)
   }
   for (CellType type : allTypes)
   {
-    // Corners of an inverted element in another order are those of its mirror image.
+    // The corners of an inverted element in another order form its mirror image.
     const std::vector<Vec3> ideal = idealCell(type);
     std::vector<Vec3> mirrored = ideal;
     for (Vec3& p : mirrored)
@@ -500,7 +500,7 @@ TAUTLINE_PART(testBadElements)
 }
 
 //------------------------------------------------------------------------------
-TAUTLINE_PART(testRefusals)
+TAUTLINE_PART(testRejections)
 {
   const MeshData good = blockMesh(CellType::Tetrahedron, 1, 1, 1);
   const DiffusionOperator poisson;

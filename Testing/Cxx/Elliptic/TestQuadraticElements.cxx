@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Finite elements on quadratic triangles and tetrahedra: known matrices, an independent quadrature
 // with the shape functions of ElementType, patch tests, convergence on bent blocks, disk and ball,
-// boundary nodes, and whatever is refused.
+// boundary nodes, and whatever is rejected.
 #include "QuadraticMeshes.h"
 #include "Registry.h"
 #include "tautline/Elements/ElementType.h"
@@ -260,7 +260,7 @@ TAUTLINE_PART(testMatrices)
   for (const Kind& kind : kinds)
   {
     const Context context(kind.name);
-    // Straight cells: exact but for the error of the comparison. Curved ones: the integrand is no
+    // Straight cells: exact up to the error of the comparison. Curved ones: the integrand is no
     // polynomial.
     for (const auto& [size, tolerance] :
       { std::pair<double, double>{ 0, 1e-5 }, std::pair<double, double>{ 0.05, 1e-3 } })
@@ -320,7 +320,7 @@ TAUTLINE_PART(testSymmetryAndThreads)
       const std::vector<double> before = one.values;
       TAUTLINE_CHECK(symmetrize(one) == 0.0 && one.values == before);
     }
-    // Rigid motions have no energy, on curved elements, too.
+    // Rigid motions have no energy, also on curved elements.
     const SparseMatrix a = stiffnessMatrix(mesh, ElasticOperator());
     const int d = kind.dimension();
     std::vector<double> turn(a.size), y(a.size);
@@ -455,7 +455,7 @@ TAUTLINE_PART(testContributions)
 }
 
 //------------------------------------------------------------------------------
-TAUTLINE_PART(testRefusals)
+TAUTLINE_PART(testRejections)
 {
   const auto solve = [](const MeshData& data)
   {

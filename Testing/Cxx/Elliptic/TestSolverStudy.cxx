@@ -152,7 +152,7 @@ TAUTLINE_PART(testFailuresAndWarnings)
     TAUTLINE_CHECK(row.trueResidual > 1e-5 && row.condition == 0);
   }
 
-  // Of the dissertation's list, some limited.
+  // Combinations of the dissertation's list, some limited.
   TAUTLINE_SET(options, solver.maximumIterations = 12, combinations = dissertationCombinations());
   study = studySolvers(system, options);
   TAUTLINE_CHECK(!contains(study.why, wording("nearly-singular")));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Heat and wave equations: the amplification of a discrete eigenmode by each scheme in closed form,
 // orders of convergence in time and in space, mass matrices, conservation of energy, elastic waves,
-// what is refused and what stops.
+// what is rejected and what stops.
 #include "Blocks.h"
 #include "Registry.h"
 #include "tautline/Elliptic/TimeStepping.h"
@@ -63,7 +63,7 @@ SolverOptions exactly()
     SolverOptions(), relativeTolerance = Tolerance, preconditioner = Preconditioner::ICC);
 }
 
-/// The factor of an eigenmode after so many steps of dt, in closed form.
+/// The factor of an eigenmode after this many steps of dt, in closed form.
 double factor(TimeScheme scheme, double lambda, double dt, int steps)
 {
   const double z = lambda * dt;
@@ -239,7 +239,7 @@ TAUTLINE_PART(testStationary)
   }
 }
 
-/// Elastic waves: the energy of a body that is let go stays the same.
+/// Elastic waves: the energy of a released body stays the same.
 TAUTLINE_PART(testElasticWaves)
 {
   for (const CellType type : { CellType::Triangle, CellType::Tetrahedron })
@@ -313,7 +313,7 @@ TAUTLINE_PART(testDecay)
   }
 }
 
-TAUTLINE_PART(testRefused)
+TAUTLINE_PART(testRejected)
 {
   const MeshData data = unitSquare(CellType::Triangle, 4);
   const Mesh mesh(data.view());
@@ -345,7 +345,7 @@ TAUTLINE_PART(testRefused)
   TAUTLINE_CHECK_THROWS(integrate(large, time, zero, zero, {}), wording("fewer-time-steps"));
   time.steps = 3;
 
-  // A solver that fails ends the integration; the observer ends it, too.
+  // A solver that fails ends the integration; so does the observer.
   SolverOptions few = exactly();
   TAUTLINE_SET(few, maximumIterations = 1, preconditioner = Preconditioner::None);
   time.scheme = TimeScheme::BackwardEuler;

@@ -95,7 +95,7 @@ TAUTLINE_PART(testShearedAndStretched)
   TAUTLINE_CHECK_NEAR(measures.ownerWeights()[0], 0.75, rounding);
 }
 
-/// A saddle: its area vector is that of the square, its triangles are larger.
+/// A saddle: its area vector equals the square's, its triangles are larger.
 TAUTLINE_PART(testWarpedFaces)
 {
   const double h = 0.4;

@@ -27,7 +27,7 @@ struct Measured
   std::vector<MeshCheck> checks;
 };
 
-/// Facets of boundary patches: the plane x = 0 is a wall, the planes across z are empty if wanted.
+/// Facets of boundary patches: the plane x = 0 is a wall, the planes across z are optionally empty.
 using Facets = std::function<ListedFacets(const MeshData&, const FaceMesh&)>;
 
 Measured measureWhole(
@@ -209,7 +209,8 @@ TAUTLINE_PART(testTangledPieces)
   }
 }
 
-/// A layer is one in pieces, too, of which one is a row of cells: edges askew are counted once.
+/// A layer is also one layer in pieces, one of which is a row of cells: edges askew are counted
+/// once.
 TAUTLINE_PART(testLayerPieces)
 {
   MeshData data = blockMesh(CellType::Hexahedron, 6, 5, 1);

@@ -103,7 +103,7 @@ TAUTLINE_PART(testNonOrthogonality)
   const MeshCheckReport report = reportOf(folded);
   TAUTLINE_CHECK(report[MeshCheckKind::PyramidVolume].failed());
   TAUTLINE_CHECK(report[MeshCheckKind::FaceTets].failed());
-  // What offends is marked.
+  // Offending cells are marked.
   const std::uint32_t bit = 1u << static_cast<int>(MeshCheckKind::PyramidVolume);
   const auto marked = std::count_if(
     report.faces.begin(), report.faces.end(), [bit](std::uint32_t bits) { return bits & bit; });

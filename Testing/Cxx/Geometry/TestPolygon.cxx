@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Constrained Delaunay triangulation of simple polygons: known ones, random ones, degenerate ones,
-// refused ones.
+// rejected ones.
 
 #include "Registry.h"
 #include "tautline/Geometry/Polygon.h"

@@ -21,7 +21,7 @@ class vtkDataSet;
 namespace tautline
 {
 
-/** What a filter has to make of a data object. */
+/** The required reaction of a filter to a data object. */
 enum class Expected
 {
   Anything, ///< a result that passes the checks, or an error

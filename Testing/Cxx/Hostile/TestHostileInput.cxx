@@ -31,12 +31,12 @@ using namespace tautline;
 
 namespace
 {
-constexpr int RandomMutations = 12; // per filter, unless TAUTLINE_FUZZ says otherwise
+constexpr int RandomMutations = 12; // per filter, unless TAUTLINE_FUZZ gives another number
 constexpr int SecondsPerDatum = 60; // then it hangs; filters with a time limit have one of 2 s
 constexpr double TooLarge = 1e30;   // what kernels take for infinite
 constexpr rlim_t MemoryLimit = 8ull << 30;
 
-/// What is wrong with a combination; "" if nothing is.
+/// The error of a combination; "" if there is none.
 using Verdict = std::string;
 
 /// The errors of an algorithm and of its executive.
@@ -67,7 +67,7 @@ private:
   std::string FilterText, PipelineText;
 };
 
-/// Prints nothing: VTK's own classes report errors there, too.
+/// Prints nothing: VTK's own classes also report errors there.
 class SilentWindow : public vtkOutputWindow
 {
 public:
@@ -142,7 +142,7 @@ Verdict checkKept(vtkFieldData* output, vtkFieldData* input)
     const char* name = array->GetName();
     if (name && !same(array, output->GetAbstractArray(name)))
     {
-      return std::string("the array ") + name + " is not that of the input";
+      return std::string("the array ") + name + " differs from the input";
     }
   }
   return "";
@@ -263,7 +263,7 @@ Verdict checkEmpty(vtkAlgorithm* filter, bool several)
   {
     vtkDataObject* output = filter->GetOutputDataObject(port);
     auto* data = vtkDataSet::SafeDownCast(output);
-    // VTK executes some filters once per block: those of the other blocks have succeeded.
+    // VTK executes some filters once per block: the other executions have succeeded.
     if (!several && data && data->GetNumberOfPoints() > 0)
     {
       return "there is an error and an output on port " + std::to_string(port);
@@ -332,10 +332,10 @@ Verdict execute(const HostileFilter& entry, const HostileData& datum, vtkDataObj
     return verdict;
   }
 
-  // Types that a port does not take are refused by VTK before the filter is asked.
-  const bool refusedType = contains(errors.ofPipeline(), wording("is-of-type"));
+  // Types that a port does not take are rejected by VTK before the filter is asked.
+  const bool rejectedType = contains(errors.ofPipeline(), wording("is-of-type"));
   const std::string& own = errors.ofFilter();
-  const bool failed = !own.empty() || refusedType;
+  const bool failed = !own.empty() || rejectedType;
   if (writer && failed == succeeded)
   {
     return failed ? "there is an error but success is returned" : "failed without an error";
@@ -345,13 +345,13 @@ Verdict execute(const HostileFilter& entry, const HostileData& datum, vtkDataObj
     // "ERROR: In file, line N\nvtkClass (address): message"
     const auto at = own.find("): ");
     constexpr std::size_t Shortest = 10;
-    if (!refusedType && (at == std::string::npos || own.size() < at + Shortest))
+    if (!rejectedType && (at == std::string::npos || own.size() < at + Shortest))
     {
       return "the error has no message: " + own;
     }
     return datum.expected == Expected::Result
-      ? "refused: " + own + errors.ofPipeline()
-      // Of several time steps, one may have a result.
+      ? "rejected: " + own + errors.ofPipeline()
+      // One of several time steps may have a result.
       : checkEmpty(filter, source || vtkCompositeDataSet::SafeDownCast(data));
   }
   if (!errors.ofPipeline().empty())
@@ -366,7 +366,7 @@ Verdict execute(const HostileFilter& entry, const HostileData& datum, vtkDataObj
   return writer ? "" : checkResult(filter, data, entry, datum);
 }
 
-/// Adds what needs to know the filter: time steps, and selections of what is not there.
+/// Adds what depends on the filter: time steps, and selections of absent items.
 std::vector<HostileData> dataFor(const HostileFilter& entry)
 {
   const char* number = std::getenv("TAUTLINE_FUZZ");
@@ -413,7 +413,7 @@ std::string nameOf(const HostileFilter& entry)
   return entry.name + (entry.variant.empty() ? "" : "/" + entry.variant);
 }
 
-/// What the child says of a combination: its place in the list, whether it exists, the verdict.
+/// The child's report on a combination: its place in the list, whether it exists, the verdict.
 struct Message
 {
   int place = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The parts of the boundary on ranks are those of one process, however the mesh is cut.
+// The parts of the boundary on ranks equal the parts on one process, however the mesh is cut.
 #include "Blocks.h"
 #include "Registry.h"
 #include "ThreadRanks.h"

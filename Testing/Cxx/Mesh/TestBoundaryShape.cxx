@@ -13,7 +13,7 @@ Vec3 at(const std::vector<double>& values, Index i)
   return { values[3 * i], values[3 * i + 1], values[3 * i + 2] };
 }
 
-/// Of a cube: faces slide in their plane, edges along themselves, eight corners stay.
+/// A cube: faces slide in their plane, edges along themselves, eight corners stay.
 TAUTLINE_PART(testCube)
 {
   for (CellType type :
@@ -64,7 +64,7 @@ TAUTLINE_PART(testAngle)
   TAUTLINE_CHECK_THROWS(boundaryShape(mesh, std::nan("")), wording("between-0-and-90"));
 }
 
-/// Of a square: the sides slide along themselves, inner points are free, corners stay.
+/// A square: the sides slide along themselves, inner points are free, corners stay.
 TAUTLINE_PART(testFlat)
 {
   for (CellType type : { CellType::Triangle, CellType::Quadrilateral })
@@ -80,7 +80,7 @@ TAUTLINE_PART(testFlat)
   }
 }
 
-/// A disk of a square: its rim is smooth at 30 degrees but for the corners, at 60 everywhere.
+/// A disk of a square: its rim is smooth at 30 degrees except at the corners, at 60 everywhere.
 TAUTLINE_PART(testSmooth)
 {
   MeshData disk = blockMesh(CellType::Triangle, 16, 16, 0);
@@ -111,7 +111,7 @@ TAUTLINE_PART(testSmooth)
   TAUTLINE_CHECK_THROWS(boundaryShape(Mesh(cube.view()), 1, -5), wording("between-0-and-180"));
 }
 
-/// A ring (of volume cells, a thick one) of so many edges around, whose inner points are at the
+/// A ring (of volume cells, a thick one) of this many edges around, whose inner points are at the
 /// radius 1 and whose outer ones are at 2.
 MeshData ring(CellType type, Index around)
 {
@@ -164,7 +164,7 @@ TAUTLINE_PART(testFineCircle)
 }
 
 /// A side that is straight at first and then a fine arc, and one that is rough by less than the
-/// tolerance: the straight and the rough points slide, those of the arc do not.
+/// tolerance: the straight and the rough points slide, the points of the arc do not.
 TAUTLINE_PART(testBentSide)
 {
   constexpr Index n = 400, straight = 200;

@@ -25,7 +25,7 @@ std::vector<Index> together(RankGroup& group, const std::vector<Index>& own)
   return all;
 }
 
-/// The cells of the parts are those of the pieces, at the same places.
+/// The parts have the cells of the pieces, at the same places.
 void checkCells(const MeshData& whole, const RankPart& part, const CellDivision& division)
 {
   const MeshView& view = division.view();
@@ -104,7 +104,7 @@ void testDivision(CellType type, Cut cut, int ranks)
       TAUTLINE_CHECK_EQUAL(std::count_if(division.ids().begin(), division.ids().end(),
                              [&](Index id) { return id >= whole.numberOfPoints(); }),
         1);
-      // What comes back is what was sent, and of several copies that of the lowest rank.
+      // The returned data equal the sent data; of several copies, the lowest rank's counts.
       TAUTLINE_CHECK(
         division.pointsToPieces(division.pointsToParts(part.pointOf, 1), 1) == part.pointOf);
       TAUTLINE_CHECK(division.pointsToParts(part.pointOf, 1) == division.ids());
@@ -135,7 +135,7 @@ void testDivision(CellType type, Cut cut, int ranks)
     });
 }
 
-/// Points without an owner leave their cells where they are; else the highest owner counts.
+/// Points without an owner leave their cells where they are; otherwise the highest owner counts.
 void testOwners()
 {
   const MeshData whole = blockMesh(CellType::Triangle, 1, 1, 0);

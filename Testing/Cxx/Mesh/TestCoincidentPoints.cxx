@@ -55,7 +55,7 @@ void append(MeshData& data, const MeshData& more)
 }
 
 /// Each merged point has the place of its representative, and cells of the merged mesh correspond
-/// to those of the whole one.
+/// to the points of the whole one.
 void checkAgainstWhole(const Pieces& pieces, const MeshData& whole)
 {
   const CoincidentPoints points = found(pieces.mesh);
@@ -165,7 +165,7 @@ TAUTLINE_PART(testApart)
   append(corner, other);
   TAUTLINE_CHECK(!found(corner).any() && found(corner).apart() == 0);
 
-  // Of two meshes at the same place the elements overlap.
+  // The elements of two meshes at the same place overlap.
   for (CellType type : { CellType::Triangle, CellType::Hexahedron })
   {
     MeshData twice = block(type, 3);
@@ -346,7 +346,7 @@ TAUTLINE_PART(testDuplicates)
       turn();
       checkDuplicates(one, { { cells, cell }, { cells + 1, cell } });
     }
-    // All cells, and those of a ball inside.
+    // All cells, and the cells of a ball inside.
     MeshData twice = data, ball = data;
     std::vector<DuplicateCell> all, inside;
     const double half = 2.0;
@@ -366,14 +366,14 @@ TAUTLINE_PART(testDuplicates)
     checkDuplicates(twice, all);
     checkDuplicates(ball, inside);
   }
-  // Triangles folded onto their neighbour share an edge with it, and are no duplicates.
+  // Triangles folded onto their neighbor share an edge with it, and are no duplicates.
   MeshData folded = block(CellType::Triangle, 3);
   const Index extra = folded.addPoint({ 1.2, 1.9, 0 });
   folded.addCell(CellType::Triangle, std::vector<Index>{ 5, 6, extra });
   checkDuplicates(folded, {});
 }
 
-/// What several threads find in meshes large enough for them is what one finds.
+/// Several threads find the same as one, in meshes large enough for them.
 TAUTLINE_PART(testThreads)
 {
   constexpr int several = 3;
@@ -421,7 +421,7 @@ TAUTLINE_PART(testThreads)
 }
 
 /// Two pieces with the cells of each other as ghosts: these have no facets, and their points are
-/// those of the cells that they are copies of.
+/// the faces of the cells that they are copies of.
 TAUTLINE_PART(testGhosts)
 {
   for (CellType type : allTypes)

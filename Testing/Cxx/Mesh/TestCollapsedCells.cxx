@@ -96,7 +96,7 @@ TAUTLINE_PART(testShapes)
   TAUTLINE_CHECK(remainingShape(CellType::Quadrilateral, nodes.data()) == CellType::Unsupported);
 }
 
-/// All metrics are those of the mesh of wedges, also with cells of 32 bits.
+/// All metrics equal the metrics of the mesh of wedges, also with cells of 32 bits.
 TAUTLINE_PART(testMetrics)
 {
   const MeshData collapsed = wheel(true, 0.15), wedges = wheel(false, 0.15);
@@ -135,7 +135,7 @@ TAUTLINE_PART(testRemarks)
   TAUTLINE_CHECK_EQUAL(std::count(validity.begin(), validity.end(), Valid),
     static_cast<std::ptrdiff_t>(validity.size()) - 1);
   TAUTLINE_CHECK_EQUAL(static_cast<int>(validity.back()), static_cast<int>(Degenerate));
-  // Of quadratic cells the corners count, and they stay quadratic.
+  // The corners of quadratic cells count, and the cells stay quadratic.
   MeshData quadratic;
   for (int k = 0; k < 20; ++k)
   {

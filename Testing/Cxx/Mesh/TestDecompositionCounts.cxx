@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is counted for parts of a mesh is what ranks with these parts have and send.
+// The counts for parts of a mesh match the data that ranks with these parts have and send.
 #include "Registry.h"
 #include "ThreadRanks.h"
 #include "tautline/Mesh/DecompositionCounts.h"
@@ -124,12 +124,12 @@ TAUTLINE_PART(testErrors)
 {
   const MeshData whole = blockMesh(CellType::Triangle, 2, 2, 0);
   const std::vector<unsigned char> free(whole.numberOfPoints(), 1);
-  const auto refused = [&](std::vector<int> partOfCell, int parts, const char* text)
+  const auto rejected = [&](std::vector<int> partOfCell, int parts, const char* text)
   {
     try
     {
       countDecomposition(whole.view(), partOfCell, parts, free);
-      TAUTLINE_CHECK(!"refused");
+      TAUTLINE_CHECK(!"rejected");
     }
     catch (const Error& error)
     {
@@ -137,12 +137,12 @@ TAUTLINE_PART(testErrors)
     }
   };
   std::vector<int> parts(whole.numberOfCells(), 0);
-  refused(parts, 0, wording("at-least-1"));
-  refused({ 0 }, 1, wording("1-numbers-of-parts-for"));
+  rejected(parts, 0, wording("at-least-1"));
+  rejected({ 0 }, 1, wording("1-numbers-of-parts-for"));
   parts[3] = 2;
-  refused(parts, 2, wording("cell-3-is-in-part-2"));
+  rejected(parts, 2, wording("cell-3-is-in-part-2"));
   parts[3] = -1;
-  refused(parts, 2, wording("cell-3-is-in-part-1"));
+  rejected(parts, 2, wording("cell-3-is-in-part-1"));
 }
 }
 

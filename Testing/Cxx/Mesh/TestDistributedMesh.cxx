@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A mesh on ranks: numbers, owners, halos and sets are those of the mesh, however it is cut.
+// A mesh on ranks: numbers, owners, halos and sets follow from the mesh, however it is cut.
 #include "Registry.h"
 #include "Sanitized.h"
 #include "ThreadRanks.h"
@@ -18,7 +18,7 @@ MeshData jittered(CellType type, Index n)
   return data;
 }
 
-/// Of each point of the whole mesh: its number and its set.
+/// For each point of the whole mesh: its number and its set.
 struct Layout
 {
   std::vector<Index> numbers;
@@ -187,7 +187,7 @@ std::vector<std::string> messagesOf(int ranks, const Change& change)
   return messages;
 }
 
-/// Divided anew: the numbers are the same, every point has one owner, all ranks own about as many,
+/// Redistributed: the numbers are the same, every point has one owner, all ranks own about as many,
 /// whoever has the cells; a random cut gets halos like surfaces.
 TAUTLINE_PART(testDivision)
 {
@@ -212,7 +212,7 @@ TAUTLINE_PART(testDivision)
           const DistributedMesh undivided(group, { piece.view, nullptr, piece.ghosts });
           TAUTLINE_CHECK_EQUAL(mesh.globalPoints(), whole.numberOfPoints());
           TAUTLINE_CHECK_EQUAL(mesh.globalCells(), whole.numberOfCells());
-          // What the owner sets arrives at all that have the point, also without own cells.
+          // The owner's values arrive at all ranks that have the point, also without own cells.
           auto values = collect<double>(mesh.localPoints(),
             [&](Index p) { return mesh.owned(p) ? static_cast<double>(mesh.numbers()[p]) : -1.0; });
           mesh.exchange(values.data(), 1);
@@ -305,7 +305,7 @@ TAUTLINE_PART(testErrors)
             part.pointOf[0] = part.pointOf[1];
           }
         }),
-    "is at two places");
+    "is at two locations");
   all(messagesOf(3,
         [](int rank, RankPart&, MeshPiece& piece)
         { piece.globalIds = rank == 0 ? nullptr : piece.globalIds; }),
@@ -339,7 +339,7 @@ TAUTLINE_PART(testTranspose)
   }
 }
 
-/// A rank that tells others of more bytes than there is memory for.
+/// A rank that announces more bytes than there is memory for.
 class AbsurdRank : public ThreadRank
 {
 public:

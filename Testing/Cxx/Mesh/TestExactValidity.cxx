@@ -12,7 +12,7 @@ namespace
 {
 constexpr CellType solidTypes[] = { CellType::Hexahedron, CellType::Wedge, CellType::Pyramid };
 
-/// The map of an element, written down anew: a pyramid's is B(u, v) + w (apex - B(u, v)).
+/// The map of an element, written again: a pyramid's is B(u, v) + w (apex - B(u, v)).
 Vec3 mapAt(CellType type, const std::vector<Vec3>& p, const Vec3& x)
 {
   const double u = x[0], v = x[1], w = x[2];
@@ -268,7 +268,7 @@ TAUTLINE_PART(testTwists)
   }
 }
 
-/// What a parallelepiped and a simplex have; collapsed elements are degenerate, not inverted.
+/// Properties of a parallelepiped and a simplex; collapsed elements are degenerate, not inverted.
 TAUTLINE_PART(testKnownValues)
 {
   const Columns shear = { Vec3{ 2, 0, 0 }, { 1, 3, 0 }, { 0.5, -1, 0.7 } };

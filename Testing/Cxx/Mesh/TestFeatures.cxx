@@ -55,7 +55,7 @@ TAUTLINE_PART(testSurfaces)
       TAUTLINE_CHECK_EQUAL(found.patchOf[p] >= 0, ends == 1);
     }
     checkCounts(featuresOf(sphereSurface(type, 8)), 0, 0, 1);
-    // Without the corner of the cube at (1, 1, 1) it has that of an L.
+    // Without the corner of the cube at (1, 1, 1) it has the shape of an L.
     checkCounts(featuresOf(lSurface(type, 4)), 12, 18, 8);
     MeshData sheet = blockMesh(type, 6, 6, 0);
     sheet.transform(TAUTLINE_PLACE(p[0], p[1], 0.02 * p[0] * p[0]));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The nodes between the corners of curved cells: of all types exact under affine motions, in place
-// without a motion, in the straight cell where they were there, and the same for neighbours.
+// without a motion, in the straight cell where they were there, and the same for neighbors.
 #include "QuadraticMeshes.h"
 #include "Registry.h"
 #include "tautline/Elements/ElementType.h"
@@ -19,7 +19,7 @@ constexpr CurvedType types[] = { { 22, 6 }, { 34, 7 }, { 23, 8 }, { 28, 9 }, { 3
   { 25, 20 }, { 29, 27 }, { 33, 24 }, { 26, 15 }, { 32, 18 }, { 31, 12 }, { 27, 13 }, { 37, 19 },
   { 69, 10 }, { 70, 16 }, { 71, 20 }, { 72, 64 }, { 73, 40 } };
 
-/// A cell whose nodes are moved at random from those of a straight one.
+/// A cell whose nodes are moved at random from the nodes of a straight one.
 MeshData curvedCell(const CurvedType& of, double size)
 {
   const ElementType& type = ElementType::ofVtk(of.vtkType, of.nodes);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is derived from a mesh: dimension and plane, boundary, adjacency; rejected meshes.
+// Data derived from a mesh: dimension and plane, boundary, adjacency; rejected meshes.
 #include "Blocks.h"
 #include "Registry.h"
 
@@ -317,7 +317,7 @@ TAUTLINE_PART(testHigherOrder)
   }
 }
 
-TAUTLINE_PART(testRefusals)
+TAUTLINE_PART(testRejections)
 {
   const MeshData good = box(CellType::Tetrahedron);
   MeshData bad = good;

@@ -108,7 +108,7 @@ void testOrientation(CellType type)
     TAUTLINE_CHECK_EQUAL(o.positiveCells, of->numberOfCells());
   }
 
-  // A vertex pulled through its neighbours tangles the mesh; its orientation stays what it was.
+  // A vertex pulled through its neighbors tangles the mesh; its orientation stays what it was.
   for (const MeshData* start : std::initializer_list<const MeshData*>{ &data, &reversed })
   {
     MeshData tangled = *start;
@@ -131,7 +131,7 @@ void testOrientation(CellType type)
 }
 
 //------------------------------------------------------------------------------
-/// Inner points mirrored: most cells are inverted, yet the boundary tells what is inside.
+/// Inner points mirrored: most cells are inverted, yet the boundary determines the inside.
 TAUTLINE_PART(testMostlyInverted)
 {
   for (CellType type : { CellType::Triangle, CellType::Tetrahedron })
@@ -219,7 +219,7 @@ TAUTLINE_PART(testFewBeside)
   }
 }
 
-/// Which cells are in which order does not matter for a tangled mesh either: neighbours tell.
+/// The order of the cells does not matter for a tangled mesh either: neighbors determine it.
 TAUTLINE_PART(testTangledAndMixed)
 {
   for (CellType type : allTypes)

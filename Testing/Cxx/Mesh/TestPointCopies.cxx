@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copies of a point whose places differ by rounding get one place by their global ids, on any
-// number of ranks; ids that are not those of one mesh join nothing.
+// number of ranks; ids that do not belong to one mesh join nothing.
 #include "Registry.h"
 #include "ThreadRanks.h"
 #include "tautline/Mesh/DistributedMesh.h"
@@ -20,7 +20,7 @@ void shift(RankPart& part, int rank, double amplitude)
   part.data.transform([&](const Vec3& p) { return p + random.vector(-amplitude, amplitude); });
 }
 
-/// What a rank finds in its part, and the mesh of all parts with the places it has then.
+/// The results of a rank in its part, and the mesh of all parts with the places it has then.
 void checkPart(RankGroup& group, const MeshData& whole, const RankPart& part, bool joins)
 {
   const JoinedCopies copies = joinCopies(group, part.data.view(), part.pointOf.data());

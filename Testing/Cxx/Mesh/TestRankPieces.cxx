@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The plane and the orientation of a mesh in pieces are those of the whole, however it is cut.
+// The plane and the orientation of a mesh in pieces equal the whole mesh's, however it is cut.
 #include "Blocks.h"
 #include "Registry.h"
 #include "ThreadRanks.h"
@@ -126,7 +126,7 @@ void testOrientation(const char* name, const MeshData& whole, Orientation::State
     });
 }
 
-/// Every third cell of a block is in the opposite order, so that many pieces have no neighbours
+/// Every third cell of a block is in the opposite order, so that many pieces have no neighbors
 /// that agree.
 MeshData everyThirdFlipped(MeshData mesh)
 {

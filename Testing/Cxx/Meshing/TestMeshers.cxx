@@ -251,7 +251,7 @@ TAUTLINE_PART(testTetrahedra)
   TAUTLINE_CHECK(std::abs(measure(mesher->GetOutput()).size - 1.0) < 1e-12);
 }
 
-/// A bound of the volume far below 1e-15: of a cube in metres whose edge is a few nanometres long.
+/// A bound of the volume far below 1e-15: of a cube in meters whose edge is a few nanometers long.
 TAUTLINE_PART(testTetrahedraScales)
 {
   constexpr double scale = 1e-8;
@@ -266,8 +266,8 @@ TAUTLINE_PART(testTetrahedraScales)
   TAUTLINE_CHECK(mesher->GetOutput()->GetNumberOfCells() > 200);
 }
 
-/// Facets that are kept hold larger tetrahedra than wanted: no smaller bound is tried then, which
-/// would only make many more inside.
+/// Facets that are kept hold larger tetrahedra than requested: no smaller bound is tried then,
+/// which would only make many more inside.
 TAUTLINE_PART(testTetrahedraOfKeptSurface)
 {
   constexpr int steps = 24; // around and between the poles

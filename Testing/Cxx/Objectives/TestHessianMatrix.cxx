@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Hessians over the free points: against differences of the whole gradient, finite on tangled
-// meshes, with their preconditioners, and at work in a truncated Newton method.
+// meshes, with their preconditioners, and their use in a truncated Newton method.
 #include "Blocks.h"
 #include "Registry.h"
 #include "tautline/Objectives/HessianMatrix.h"

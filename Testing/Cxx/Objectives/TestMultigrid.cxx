@@ -103,7 +103,7 @@ TAUTLINE_PART(testSemidefinite)
   }
 }
 
-/// What is left out cancels in a grid of equal cells: both Hessians have the same rows inside.
+/// The omitted terms cancel in a grid of equal cells: both Hessians have the same rows inside.
 TAUTLINE_PART(testCancellation)
 {
   for (CellType type : { CellType::Triangle, CellType::Quadrilateral, CellType::Hexahedron })

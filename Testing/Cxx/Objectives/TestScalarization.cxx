@@ -223,14 +223,14 @@ TAUTLINE_PART(testErrors)
     Scalarizer(good, { std::nan(""), 1 }, { 1, 2 }), wording("weight-of-objective-1"));
   TAUTLINE_CHECK_THROWS(Scalarizer(good, { 1, 1 }, { 1, infinity }), "Untangle");
   TAUTLINE_CHECK_THROWS(Scalarizer(good, { 1 }, { 1 }).value({ 1, 2 }), "2 values");
-#define REFUSED(change, text) \
+#define REJECTED(change, text) \
   TAUTLINE_CHECK_THROWS(Scalarizer(TAUTLINE_CHANGED(good, change), { 1 }, { 1 }), text)
-  REFUSED(c = -1, wording("c-of-the-exponential-sum"));
-  REFUSED(c = infinity, wording("c-of-the-exponential-sum"));
-  REFUSED(exponent = 0, "exponent");
-  REFUSED(tolerance = -0.1, "tolerance");
-  REFUSED(utopia = (std::vector<double>{ 1, 2 }), "utopia");
-  REFUSED(utopia = { infinity }, "utopia");
-  REFUSED(method = static_cast<Scalarization>(8), "number 8");
+  REJECTED(c = -1, wording("c-of-the-exponential-sum"));
+  REJECTED(c = infinity, wording("c-of-the-exponential-sum"));
+  REJECTED(exponent = 0, "exponent");
+  REJECTED(tolerance = -0.1, "tolerance");
+  REJECTED(utopia = (std::vector<double>{ 1, 2 }), "utopia");
+  REJECTED(utopia = { infinity }, "utopia");
+  REJECTED(method = static_cast<Scalarization>(8), "number 8");
 }
 }

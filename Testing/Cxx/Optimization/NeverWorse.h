@@ -10,7 +10,7 @@
 
 namespace tautline
 {
-/// A block with a wavy side, as a surface if wanted; inner points are moved by up to `amplitude`.
+/// A block with a wavy side, as a surface on request; inner points are moved by up to `amplitude`.
 inline MeshData randomMesh(CellType type, bool surface, double amplitude, unsigned seed)
 {
   const Index n = topology(type).dimension == 2 ? 6 : 4;
@@ -21,7 +21,7 @@ inline MeshData randomMesh(CellType type, bool surface, double amplitude, unsign
   return data;
 }
 
-/// What a preset minimizes, computed from element values alone.
+/// The objective of a preset, computed from element values alone.
 inline double objectiveOf(Preset preset, const Mesh& mesh, const Targets* targets)
 {
   const Index cells = mesh.view().numberOfCells;

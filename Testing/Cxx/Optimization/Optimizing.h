@@ -55,7 +55,7 @@ inline double sumOfSquares(const MeshData& like, const std::vector<double>& poin
   return sumOf<double>(0, valuesOf(moved, metric), [&](double q) { return q * q; });
 }
 
-/// Of the cells with a vertex that is not on the boundary.
+/// For the cells with a vertex that is not on the boundary.
 inline double worstMovable(const MeshData& like, const std::vector<double>& points)
 {
   MeshData moved = TAUTLINE_CHANGED(like, points = points);

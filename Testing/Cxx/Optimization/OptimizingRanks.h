@@ -17,7 +17,7 @@
 
 namespace tautline
 {
-/** What a rank has found: the result of optimize() or of untangle(). */
+/** The result of a rank: the result of optimize() or of untangle(). */
 struct Found : OptimizeResult
 {
   std::size_t remaining = 0;
@@ -30,7 +30,7 @@ struct ElementData
   std::vector<double> weights;
   Targets targets;
 };
-/** Sets those of the options' objectives, for any part of the mesh alike. */
+/** Sets the weights of the options' objectives, in the same way for any part of the mesh. */
 using SetElements = std::function<void(const Mesh&, ElementData&, OptimizeOptions&)>;
 
 enum class Constraint

@@ -13,7 +13,7 @@ namespace tautline
 {
 using Triangle = std::array<Vec3, 3>;
 
-/// Of a point from a triangle, by the three edges and the plane.
+/// The distance of a point from a triangle, by the three edges and the plane.
 inline double distanceTo(const Triangle& t, const Vec3& x)
 {
   double least = 1e300;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Random meshes of all cell types through the filter Optimize Mesh, with every preset and boundary,
 // in single and double precision, listed in both orders, near and far from the origin: what is
-// written is not worse than the input, and the numbers reported are those of what is written.
+// written is not worse than the input, and the reported numbers match the written mesh.
 #include "NeverWorse.h"
 #include "Registry.h"
 #include "VtkMeshes.h"
@@ -22,7 +22,7 @@ constexpr int stride = 13;        // in the fast run; it divides no number of ch
 constexpr double rounding = 1e-8; // relative, of what is computed in another order
 constexpr Index half = 3;         // the elements on both sides of it are two regions
 
-/// What one mesh is, from its number.
+/// The properties of a mesh, from its number.
 struct Case
 {
   int number;
@@ -154,7 +154,7 @@ void checkKept(vtkUnstructuredGrid* input, vtkUnstructuredGrid* output)
   }
 }
 
-/// What the preset minimizes; with a free boundary, sizes are compared with their mean.
+/// The objective of the preset; with a free boundary, sizes are compared with their mean.
 double objectiveAt(
   const Case& test, const MeshData& input, const Mesh& mesh, const Targets* targets)
 {
@@ -172,7 +172,7 @@ double objectiveAt(
   return objectiveOf(Preset::BestShape, mesh, nullptr) + std::accumulate(q.begin(), q.end(), 0.0);
 }
 
-/// What is reported, of the points as they are written.
+/// The reported numbers, for the points as they are written.
 void checkReported(vtkMeshOptimizer* filter, vtkUnstructuredGrid* output, const MeshData& after,
   const Targets* targets)
 {
@@ -198,7 +198,7 @@ void checkReported(vtkMeshOptimizer* filter, vtkUnstructuredGrid* output, const 
 
 struct Totals
 {
-  int valid = 0, tangled = 0, refused = 0, better = 0, doubled = 0, unchanged = 0, drifted = 0;
+  int valid = 0, tangled = 0, rejected = 0, better = 0, doubled = 0, unchanged = 0, drifted = 0;
 };
 
 //------------------------------------------------------------------------------
@@ -232,7 +232,7 @@ vtkSmartPointer<vtkUnstructuredGrid> runOne(
     const bool sized =
       test.preset == Preset::UniformSize || test.preset == Preset::LowInterpolationError;
     TAUTLINE_CHECK(messages.has("shrink") && sized && test.boundary != vtkMeshOptimizer::FIXED);
-    ++totals.refused;
+    ++totals.rejected;
     return nullptr;
   }
   vtkSmartPointer<vtkUnstructuredGrid> output = outputOf<vtkUnstructuredGrid>(filter);
@@ -294,7 +294,7 @@ double drift(const MeshData& before, const MeshData& after)
   return norm(sum) / static_cast<double>(before.numberOfPoints());
 }
 
-/// The output of a first run is an input, too: nearly as good as it gets, so that rounding matters.
+/// The output of a first run is also an input: nearly as good as it gets, so that rounding matters.
 void testOne(int number, Totals& once, Totals& again)
 {
   const Case test(number);
@@ -316,9 +316,9 @@ void testOne(int number, Totals& once, Totals& again)
 
 void print(const char* run, const Totals& totals)
 {
-  std::printf("%s: %d valid meshes, %d of them better; %d tangled; %d refused; %d written in "
+  std::printf("%s: %d valid meshes, %d of them better; %d tangled; %d rejected; %d written in "
               "double precision instead of single; %d unchanged\n",
-    run, totals.valid, totals.better, totals.tangled, totals.refused, totals.doubled,
+    run, totals.valid, totals.better, totals.tangled, totals.rejected, totals.doubled,
     totals.unchanged);
 }
 }
@@ -337,6 +337,6 @@ TAUTLINE_TEST(TestFilterNeverWorse)
   TAUTLINE_CHECK(once.valid > count / 4);
   TAUTLINE_CHECK(once.tangled > count / 4);
   TAUTLINE_CHECK(once.better > 3 * once.valid / 4);
-  TAUTLINE_CHECK(once.refused < count / 5);
+  TAUTLINE_CHECK(once.rejected < count / 5);
   TAUTLINE_CHECK(again.valid > count / 2);
 }

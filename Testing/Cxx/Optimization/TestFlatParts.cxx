@@ -11,7 +11,7 @@ using namespace tautline;
 namespace
 {
 constexpr Index n = 16; // cells along an edge: enough for several grids
-/// Of the block: no face but two is at right angles to an axis.
+/// The block: only two faces are at right angles to an axis.
 constexpr double shearByY = 0.5, shearByZ = 0.3;
 constexpr double height = 0.08; // of the bump, in edges of the block
 
@@ -27,7 +27,7 @@ Vec3 unsheared(const double* x)
   return { x[0] - shearByY * y - shearByZ * x[2], y, x[2] };
 }
 
-/// A sheared unit cube, its points moved at random but for those of the boundary; with a bump, the
+/// A sheared unit cube, its points moved at random except on the boundary; with a bump, the
 /// top is curved between straight edges.
 MeshData shearedBlock(CellType type, double bump)
 {
@@ -206,7 +206,7 @@ TAUTLINE_PART_SLOW(testSurface)
     TAUTLINE_SET(options, optimizer = Optimizer::LocalNewton, stopping.relativeChange = 1e-9);
     const OptimizeResult sweeps = optimize(mesh, options);
     std::cout << "surface " << bump << ": " << result.iterations << " and " << sweeps.iterations
-              << " iterations, objective / that of sweeps "
+              << " iterations, objective / objective of sweeps "
               << result.history.back().objective / sweeps.history.back().objective << "\n";
     TAUTLINE_CHECK(result.history.back().objective < (1 + 1e-3) * sweeps.history.back().objective);
     const double wanted = (1 + 1e-4) * result.history.back().objective;

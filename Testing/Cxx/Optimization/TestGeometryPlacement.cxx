@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The points of a mesh are placed on the geometry before the first iteration, but for those of
+// The points of a mesh are placed on the geometry before the first iteration, except points of
 // elements that this would invert.
 #include "Registry.h"
 #include "Surfaces.h"

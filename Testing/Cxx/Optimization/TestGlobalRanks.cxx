@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Optimizers that move all points at once, on ranks: the result does not depend on how the mesh is
-// cut, and is as good as that of one process in its own order.
+// cut, and is as good as the result of one process in its own order.
 #include "OptimizingRanks.h"
 #include "Registry.h"
 #include "StretchedMeshes.h"
@@ -117,7 +117,7 @@ void testOptimizers()
   }
 }
 
-/// Points slide in planes that are not at right angles to an axis, too, though coarse grids mix the
+/// Points also slide in planes that are not at right angles to an axis, though coarse grids mix the
 /// coordinates.
 void testSlantedPlanes()
 {
@@ -168,7 +168,7 @@ void testObjectives()
 /// Elements that stay invalid are left out, whatever parts they are in.
 void testTangled()
 {
-  // Points of the boundary are moved, too: not all elements can become valid.
+  // Points of the boundary are also moved: not all elements can become valid.
   const MeshData tangled = jittered(CellType::Tetrahedron, 6, 0.45);
   for (const Optimizer optimizer :
     { Optimizer::LimitedMemoryBFGS, Optimizer::NewtonConjugateGradient })

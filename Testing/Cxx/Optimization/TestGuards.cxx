@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What became worse goes back to where it was, element by element: what that makes worse in turn
+// Elements that became worse go back to where they were, one by one: those made worse in turn
 // follows. After 20 rounds everything goes back.
 #include "Optimizing.h"
 #include "Registry.h"

@@ -39,7 +39,7 @@ Index broughtBack(const MeshData& whole, const Run& guarded, const Run& free)
   return count;
 }
 
-/// How the worst element gets as good as that of the input.
+/// How the worst element becomes as good as the input's.
 enum class Remedy
 {
   Improve,
@@ -132,7 +132,7 @@ struct Limited
 };
 
 /// An element without a value of the user's metric that judges is the worst one: the result has
-/// none where the input has none, and an input with one is refused.
+/// none where the input has none, and an input with one is rejected.
 void testWithoutValue(bool larger)
 {
   const Context context(larger ? "larger is better" : "smaller is better");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Rounds that improve the worst element: each that counts improves it, costs the mean no more than
-// allowed and inverts nothing; the points are those of the last such round.
+// allowed and inverts nothing; the points come from the last such round.
 #include "Optimizing.h"
 #include "Registry.h"
 #include "tautline/Core/Stopwatch.h"
@@ -12,7 +12,7 @@ using namespace tautline;
 
 namespace
 {
-/// What is known after a round, computed from its points.
+/// The data after a round, computed from its points.
 struct Round
 {
   std::vector<double> points;
@@ -23,7 +23,7 @@ struct Round
 class Rounds
 {
 public:
-  /// @param from the points to begin with; the guard knows those of `data`
+  /// @param from the points to begin with; the guard has the points of `data`
   Rounds(const MeshData& data, Metric metric, ObjectiveTemplate objectiveTemplate)
     : Data(data)
     , TheMesh(this->Data.view())
@@ -120,7 +120,7 @@ TAUTLINE_PART(testRounds)
     // In closed form, a round that gains little is the last.
     constexpr double worthwhile = 1e-3;
     const bool closed = metric == Metric::InverseMeanRatio && topology(type).samples == 1;
-    // As much as one wants, and what the first of those rounds costs.
+    // No limit, and the cost of the first of these rounds as the limit.
     double allowance = 0.5;
     for (const bool tight : { false, true })
     {
@@ -148,8 +148,8 @@ TAUTLINE_PART(testRounds)
   }
 }
 
-/// Where the worst element is worse than that of the input, no cost counts until it is as good; and
-/// that is all, if no more is wanted.
+/// If the worst element is worse than the input's, no cost counts until it is as good; without a
+/// further aim the run ends there.
 TAUTLINE_PART(testBackToInput)
 {
   for (const CellType type : { CellType::Tetrahedron, CellType::Hexahedron })
@@ -164,7 +164,7 @@ TAUTLINE_PART(testBackToInput)
     const std::vector<Round> better = rounds.from(start, { 0.5, false });
     input.points = better[std::min<std::size_t>(2, better.size() - 1)].points;
     Rounds again(input, Metric::InverseMeanRatio, ObjectiveTemplate::SumOfSquares);
-    // The guard counts the elements that cannot move, too.
+    // The guard also counts the elements that cannot move.
     const std::vector<double> q = valuesOf(input, Metric::InverseMeanRatio);
     const double worst = *std::max_element(q.begin(), q.end());
     const std::vector<Round> back = again.from(start, { 0, true });
@@ -215,7 +215,7 @@ TAUTLINE_PART(testPull)
 }
 
 /// The first sweep of a round visits the free points of elements with a share of at least 1e-5 in
-/// the p-mean, next to that of the worst one; and no others.
+/// the p-mean, beside the worst element's; and no others.
 TAUTLINE_PART(testVerticesNear)
 {
   for (const CellType type : { CellType::Tetrahedron, CellType::Hexahedron })

@@ -18,7 +18,7 @@ struct TwoRegions
   MeshData data;
   std::vector<double> regions;
   std::vector<Index> interface; ///< its points
-  /// How far a point of the interface is from its axis or centre.
+  /// How far a point of the interface is from its axis or center.
   std::function<double(const Vec3&)> radius;
 };
 
@@ -203,7 +203,7 @@ TAUTLINE_PART_SLOW(testShapes)
   }
 }
 
-/// Fine facets, stretched in the input: the volume within them grows towards that of the ball, as
+/// Fine facets, stretched in the input: the volume within them grows towards the ball's, as
 /// they become regular, and stays there.
 TAUTLINE_PART_SLOW(testFineBall)
 {
@@ -223,7 +223,8 @@ TAUTLINE_PART_SLOW(testFineBall)
   }
 }
 
-/// The surface tolerance holds interfaces, too, whatever the boundary does; the summary says so.
+/// The surface tolerance also applies to interfaces, whatever the boundary does; the summary states
+/// it.
 TAUTLINE_PART(testTolerance)
 {
   for (int boundary : { vtkMeshOptimizer::FIXED, vtkMeshOptimizer::SLIDING, vtkMeshOptimizer::FREE,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One sweep over the vertices: the objective it returns is that of the mesh, the gradient that of
-// the objective; after it only the vertices that moved and their neighbours are visited.
+// One sweep over the vertices: it returns the objective of the mesh, and the gradient of the
+// objective; after it only the vertices that moved and their neighbors are visited.
 #include "Optimizing.h"
 #include "Registry.h"
 #include "tautline/Optimization/LocalSweep.h"
@@ -33,7 +33,7 @@ double objectiveOf(const MeshData& data, const SimplexMesh& simplices)
 }
 
 //------------------------------------------------------------------------------
-/// Many blocks of vertices, of several colours; points of one side slide on it, or none.
+/// Many blocks of vertices, of several colors; points of one side slide on it, or none.
 void testValues(CellType type, bool slides)
 {
   const Context context(std::string(topology(type).name) + (slides ? ", sliding" : ""));
@@ -80,7 +80,7 @@ void testValues(CellType type, bool slides)
 }
 
 //------------------------------------------------------------------------------
-/// Of a vertex that no other one influences, by differences.
+/// For a vertex that no other one influences, by differences.
 TAUTLINE_PART(testGradient)
 {
   for (CellType type : { CellType::Triangle, CellType::Tetrahedron })
@@ -144,7 +144,7 @@ TAUTLINE_PART(testRelaxation)
 }
 
 //------------------------------------------------------------------------------
-/// Regular but for one vertex: with culling, sweeps stay near it.
+/// Regular except for one vertex: with culling, sweeps stay near it.
 TAUTLINE_PART(testCulling)
 {
   constexpr Index n = 24;
@@ -185,7 +185,7 @@ TAUTLINE_PART(testCulling)
   }
 }
 
-/// A sweep that culling has kept to a few vertices does not tell that the others have converged.
+/// A sweep that culling has kept to a few vertices does not show that the others have converged.
 TAUTLINE_PART(testConvergenceOfAll)
 {
   constexpr double tolerance = 1e-3;

@@ -331,7 +331,7 @@ TAUTLINE_PART(testArrays)
   }
 }
 
-/// What stays: by array, by a selection of points or cells, ghost cells, lines.
+/// Fixed points: by array, by a selection of points or cells, ghost cells, lines.
 TAUTLINE_PART(testFixed)
 {
   const MeshData data = perturbed(CellType::Triangle, 8);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Optimize Mesh on inputs of all kinds: refused by name, or taken as they are; blocks, precision,
+// Optimize Mesh on inputs of all kinds: rejected by name, or taken as they are; blocks, precision,
 // iterations as time steps, abort.
 #include "QuadraticMeshes.h"
 #include "Registry.h"
@@ -37,11 +37,11 @@ double objective(vtkMeshOptimizer* filter, vtkIdType row)
   return filter->GetHistory()->GetValueByName(row, "Objective").ToDouble();
 }
 
-/// Each is refused with a message that names what is wrong and what to do; the output is empty.
-TAUTLINE_PART(testRefused)
+/// Each is rejected with a message that names what is wrong and what to do; the output is empty.
+TAUTLINE_PART(testRejected)
 {
   const MeshData data = perturbed(CellType::Tetrahedron, 3);
-  const auto refuse = [](
+  const auto reject = [](
                         const std::string& text, vtkDataObject* input,
                         const std::function<void(vtkMeshOptimizer*)>& change = [](auto*) {})
   {
@@ -57,40 +57,40 @@ TAUTLINE_PART(testRefused)
     TAUTLINE_CHECK_EQUAL(filter->GetStopReason(), -1);
   };
   TAUTLINE_NEW(vtkImageData, image, SetDimensions(3, 3, 3));
-  refuse(wording("image-data-to-point-set"), image);
+  reject(wording("image-data-to-point-set"), image);
 
   // Curved cells have no limits.
-  refuse(wording("set-maximum-displacement-to-0"), toGrid(quadraticOf(data)),
+  reject(wording("set-maximum-displacement-to-0"), toGrid(quadraticOf(data)),
     [](vtkMeshOptimizer* filter) { filter->SetMaximumDisplacement(1); });
 
   TAUTLINE_LET(MeshData, lines, points = data.points);
   lines.addCell(VTK_LINE, { 0, 1 });
-  refuse(wording("no-element-whose-points-could-move"), toGrid(lines));
+  reject(wording("no-element-whose-points-could-move"), toGrid(lines));
 
   const auto custom = [](const char* metric, int form = -1, double weight = 1, int target = 0)
   {
     return [=](vtkMeshOptimizer* filter)
     { filter->AddObjectiveByName(metric, form, weight, target); };
   };
-  refuse(wording("no-template"), toGrid(data),
+  reject(wording("no-template"), toGrid(data),
     [&](auto* filter)
     {
       custom("imr", 17)(filter);
       filter->SetInputData(nullptr);
       filter->SetInputArrayToProcess(2, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "none");
     });
-  refuse(wording("set-the-input-reference"), toGrid(data), custom("mu_2", -1, 1, 1));
-  refuse(wording("needs-a-size"), toGrid(data), custom("mu_size", -1, 1, 2));
-  refuse(wording("needs-a-metric-tensor"), toGrid(data), custom("mu_size", -1, 1, 3));
-  refuse("weight", toGrid(data), custom("imr", -1, -2));
-  refuse(wording("no-point-array-absent"), toGrid(data),
+  reject(wording("set-the-input-reference"), toGrid(data), custom("mu_2", -1, 1, 1));
+  reject(wording("needs-a-size"), toGrid(data), custom("mu_size", -1, 1, 2));
+  reject(wording("needs-a-metric-tensor"), toGrid(data), custom("mu_size", -1, 1, 3));
+  reject("weight", toGrid(data), custom("imr", -1, -2));
+  reject(wording("no-point-array-absent"), toGrid(data),
     [](auto* filter) {
       filter->SetInputArrayToProcess(2, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "absent");
     });
-  refuse(wording("no-cell-array-absent"), toGrid(data),
+  reject(wording("no-cell-array-absent"), toGrid(data),
     [](auto* filter)
     { filter->SetInputArrayToProcess(4, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "absent"); });
-  refuse(wording("set-the-input-reference"), toGrid(data),
+  reject(wording("set-the-input-reference"), toGrid(data),
     [](auto* filter) { filter->SetPreset(vtkMeshOptimizer::PRESERVE_SHAPE); });
 
   vtkNew<vtkMeshOptimizer> filter;
@@ -104,7 +104,7 @@ TAUTLINE_PART(testRefused)
 }
 
 /// Empty, without a free point, with one, reversed, disconnected, far from the origin, not finite.
-/// Of an array the name counts, where only points or only cells can have it: ParaView's Python
+/// Only the name of an array counts if only points or only cells can have it: ParaView's Python
 /// leaves the association of a property that is set to a name.
 TAUTLINE_PART(testAssociations)
 {
@@ -236,7 +236,7 @@ TAUTLINE_PART(testTaken)
     sumOfSquares(withPointsOf(twice, meshOf(filter))), 2 * sumOfSquares(straight), 1e-4);
   TAUTLINE_CHECK(messages.empty());
 
-  // A NaN: either refused by name, or the rest is finite and no worse.
+  // A NaN: either rejected by name, or the rest is finite and no worse.
   MeshData broken = data;
   broken.points[3 * 24] = std::numeric_limits<double>::quiet_NaN();
   TAUTLINE_SET(filter, SetInputData(toGrid(broken)), Update());
@@ -361,7 +361,7 @@ TAUTLINE_PART(testAnimation)
   TAUTLINE_CHECK(withPointsOf(data, meshOf(filter)).points == expected.points);
   TAUTLINE_CHECK(runs < int(seen.size()) * 6); // no iteration was computed again
 
-  // A client that shows time 0 first: the summary is that of the result.
+  // A client that shows time 0 first: the summary belongs to the result.
   TAUTLINE_NEW(vtkMeshOptimizer, first, SetInputData(toGrid(data)), SetAnimation(true),
     UpdateInformation(), UpdateTimeStep(0));
   TAUTLINE_CHECK(withPointsOf(data, meshOf(first)).points == seen[0]);
@@ -372,7 +372,7 @@ TAUTLINE_PART(testAnimation)
   };
   TAUTLINE_CHECK_EQUAL(qualities(first), qualities(filter));
 
-  // Another option starts anew.
+  // Another option starts over.
   TAUTLINE_SET(filter, SetPreset(vtkMeshOptimizer::CUSTOM), SetMaximumIterations(2), Update());
   TAUTLINE_CHECK_EQUAL(filter->GetOutputInformation(0)->Length(Pipeline::TIME_STEPS()), 3);
 

@@ -228,7 +228,7 @@ struct Convex : SmoothFunction
   }
 };
 
-/// Each direction is -g + beta d with the formula of the method, not with that of the other.
+/// Each direction is -g + beta d with the formula of the method, not of the other one.
 TAUTLINE_PART(testConjugateDirections)
 {
   const auto dot = [](const Vector& a, const Vector& b)
@@ -556,8 +556,8 @@ TAUTLINE_PART(testStalled)
   }
 }
 
-/// Of one variable: the first trial step of each method goes to `trial`, where the value has fallen
-/// by a given part of what the slope promises, and the slope is 0.
+/// A function of one variable: the first trial step of each method goes to `trial`, where the value
+/// has fallen by a given part of what the slope promises, and the slope is 0.
 struct FirstTrial : SmoothFunction
 {
   static constexpr double trial = 0.1;
@@ -580,7 +580,7 @@ struct FirstTrial : SmoothFunction
     g[0] = -(1 - 4 * t + 3 * t * t) + 6 * t * (1 - t) * (end - 1) / trial;
     return 1 - trial * t * (1 - t) * (1 - t) + up * (end - 1);
   }
-  /// Of a parabola with its minimum at the trial step.
+  /// A parabola with its minimum at the trial step.
   bool hessianTimes(const double* d, double* product) override
   {
     product[0] = d[0] / trial;
@@ -588,8 +588,8 @@ struct FirstTrial : SmoothFunction
   }
 };
 
-/// A step has to reach 1e-4 of the decrease that the slope promises: half of that is refused, twice
-/// as much is taken.
+/// A step has to reach 1e-4 of the decrease that the slope promises: half of that is rejected,
+/// twice as much is accepted.
 TAUTLINE_PART(testArmijo)
 {
   constexpr double constant = 1e-4;

@@ -23,7 +23,7 @@ constexpr int stride = 5;
 
 struct Totals
 {
-  int valid = 0, tangled = 0, refused = 0, better = 0, restored = 0;
+  int valid = 0, tangled = 0, rejected = 0, better = 0, restored = 0;
 };
 
 //------------------------------------------------------------------------------
@@ -80,7 +80,7 @@ void testOne(int number, Totals& totals)
     const bool sized = preset == Preset::UniformSize || preset == Preset::LowInterpolationError;
     TAUTLINE_CHECK(sized && motion != Motion::Fixed);
     TAUTLINE_CHECK(contains(error.what(), "shrink"));
-    ++totals.refused;
+    ++totals.rejected;
     return;
   }
   const Index after = invalid(data, result.points);
@@ -115,10 +115,11 @@ TAUTLINE_TEST(TestNeverWorse)
   {
     testOne(i, totals);
   }
-  std::printf("%d valid meshes, %d of them better; %d tangled; %d refused; points restored in %d\n",
-    totals.valid, totals.better, totals.tangled, totals.refused, totals.restored);
+  std::printf(
+    "%d valid meshes, %d of them better; %d tangled; %d rejected; points restored in %d\n",
+    totals.valid, totals.better, totals.tangled, totals.rejected, totals.restored);
   TAUTLINE_CHECK(totals.valid > count / 4);
   TAUTLINE_CHECK(totals.tangled > count / 4);
   TAUTLINE_CHECK(totals.better > 3 * totals.valid / 4);
-  TAUTLINE_CHECK(totals.refused < count / 5);
+  TAUTLINE_CHECK(totals.rejected < count / 5);
 }

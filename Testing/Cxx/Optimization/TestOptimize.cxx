@@ -59,7 +59,7 @@ TAUTLINE_PART(testMinima)
   }
 }
 
-/// One free vertex goes to the centre of a regular hexagon.
+/// One free vertex goes to the center of a regular hexagon.
 TAUTLINE_PART(testSingleVertex)
 {
   TAUTLINE_LET(MeshData, data, addPoint({ 0.3, -0.2, 0 }));
@@ -225,7 +225,7 @@ TAUTLINE_PART(testLexicographicBeyondBound)
   TAUTLINE_CHECK_EQUAL(presentable(scalarizer, record).objective, 2.5);
 }
 
-/// Blocks of one colour, each of which reduces a product by itself, together leave its domain: the
+/// Blocks of one color, each of which reduces a product by itself, together leave its domain: the
 /// sweep is taken back.
 TAUTLINE_PART(testSweepTakenBack)
 {
@@ -246,7 +246,7 @@ TAUTLINE_PART(testSweepTakenBack)
     TAUTLINE_CHECK(std::isfinite(now));
     TAUTLINE_CHECK(i == 0 || now <= result.history[i - 1].objective);
   }
-  // The points are those of the last record.
+  // The points belong to the last record.
   MeshData moved = TAUTLINE_CHANGED(data, points = result.points);
   options.stopping.maximumIterations = 0;
   const std::vector<double> last = result.history.back().objectives;
@@ -504,7 +504,7 @@ TAUTLINE_PART(testReachOfOptimizers)
     TAUTLINE_CHECK_EQUAL(isGlobal(optimizer), global);
     TAUTLINE_CHECK_EQUAL(isLocal(optimizer), !global && optimizer != Optimizer::Automatic);
   }
-  // `optimizers` has all numbers: those beside its own are refused.
+  // `optimizers` has all numbers: those beside its own are rejected.
   TAUTLINE_CHECK_THROWS(isGlobal(static_cast<Optimizer>(-1)), wording("no-optimizer-1"));
   TAUTLINE_CHECK_THROWS(
     isLocal(static_cast<Optimizer>(std::size(optimizers))), wording("no-optimizer-7"));
@@ -513,7 +513,7 @@ TAUTLINE_PART(testReachOfOptimizers)
   TAUTLINE_CHECK_THROWS(run(data, options), wording("no-optimizer-7"));
 }
 
-/// 0 is an ordinary best known objective: that of an untangling objective.
+/// 0 is an ordinary best known value, for an untangling objective.
 TAUTLINE_PART(testBestKnownOfZero)
 {
   const MeshData data = perturbedBlock(CellType::Triangle, 12, 0.8);
@@ -579,7 +579,7 @@ TAUTLINE_PART(testUntanglingObjectives)
   const OptimizeResult shape = run(blockMesh(CellType::Triangle, 6, 6, 0), alone);
   TAUTLINE_CHECK_RELATIVE(result.history.back().worst[1], shape.history.back().worst[0], 1e-2);
 
-  // Without such an objective the mesh is untangled first, or refused.
+  // Without such an objective the mesh is untangled first, or rejected.
   options = OptimizeOptions();
   result = run(data, options);
   TAUTLINE_CHECK(result.untangled);

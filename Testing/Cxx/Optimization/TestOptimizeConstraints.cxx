@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the optimizer must keep: fixed points, limits, planes, lines, surfaces.
+// The constraints of the optimizer: fixed points, limits, planes, lines, surfaces.
 #include "Optimizing.h"
 #include "Registry.h"
 #include "tautline/Boundary/SurfaceProjection.h"
@@ -45,7 +45,7 @@ TAUTLINE_PART(testConstraints)
   options.optimizer = Optimizer::LimitedMemoryBFGS;
   TAUTLINE_CHECK_THROWS(run(data, options), wording("need-a-local-optimizer"));
 
-  // Points of the face z = 0 slide in it, those of its edges along them; the corners stay.
+  // Points of the face z = 0 slide in it, points of its edges along them; the corners stay.
   for (Optimizer optimizer :
     { Optimizer::LocalNewton, Optimizer::LocalConjugateGradient, Optimizer::LimitedMemoryBFGS })
   {

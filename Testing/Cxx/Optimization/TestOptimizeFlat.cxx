@@ -31,8 +31,8 @@ double minimumOf(const MeshData& data, OptimizeOptions options)
   return run(data, options).history.back().objective;
 }
 
-/// Elements of an aspect ratio of two million beside those of 1: Newton's directions are nearly at
-/// right angles to the gradient.
+/// Elements of an aspect ratio of two million beside elements of 1: Newton's directions are nearly
+/// at right angles to the gradient.
 TAUTLINE_PART_SLOW(testNewton)
 {
   for (const CellType type : { CellType::Quadrilateral, CellType::Triangle })
@@ -48,7 +48,7 @@ TAUTLINE_PART_SLOW(testNewton)
       TAUTLINE_CHECK(result.history.back().objective <= 1.0001 * least);
       TAUTLINE_CHECK(result.reason == StopReason::RelativeChange);
       TAUTLINE_CHECK_EQUAL(result.invertedAfter, Index(0));
-      // What is left to gain by moving single points confirms the minimum.
+      // The remaining gain by moving single points confirms the minimum.
       TAUTLINE_CHECK(nextGain(data, result.points) < 1e-4);
     }
   }
@@ -72,7 +72,7 @@ TAUTLINE_PART_SLOW(testObjectives)
   for (const auto& [name, options] : cases)
   {
     const Context context(name);
-    // Of the uniform grid: the mean ratio is 1, and so are the sizes over their mean.
+    // The uniform grid: the mean ratio is 1, and so are the sizes over their mean.
     const OptimizeResult grid = run(stretchedRows(CellType::Quadrilateral, cells, 3), options);
     TAUTLINE_CHECK_RELATIVE(grid.history.back().objective, 1.0, 1e-3);
     const MeshData bent = bentStrip(CellType::Tetrahedron, 10, 2);
@@ -168,8 +168,8 @@ TAUTLINE_PART(testFirstRow)
   }
 }
 
-/// A tangled mesh that is barely planar: untangling moves points into a plane, from which that of
-/// the boundary that is highest is then farther. It stays planar: a global method may go on.
+/// A tangled mesh that is barely planar: untangling moves points into a plane, from which the
+/// highest point of the boundary is then farther. It stays planar: a global method may go on.
 TAUTLINE_PART(testBarelyPlanar)
 {
   int less = 0;

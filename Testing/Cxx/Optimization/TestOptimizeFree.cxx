@@ -122,11 +122,11 @@ void testRanks()
         data.transform([](const Vec3& p) { return p + Vec3{ 10, 10, 0 }; });
         const Drift found =
           driftOnRanks(data, newton ? Optimizer::NewtonConjugateGradient : Optimizer::Automatic);
-        // Other elements than simplices are left to Newton's method by Automatic, too.
+        // Automatic also leaves elements other than simplices to Newton's method.
         const bool sweeps = !newton && topology(type).samples == 1;
         TAUTLINE_CHECK(found.far <= (sweeps ? little : rounding));
         TAUTLINE_CHECK(found.fromOne <= (sweeps ? little : rounding));
-        std::printf("%d, %s%s: center moved by %.2g elements, is %.2g from that of one process\n",
+        std::printf("%d, %s%s: center moved by %.2g elements, is %.2g from one process's\n",
           static_cast<int>(n), topology(type).plural, newton ? ", Newton's method" : "", found.far,
           found.fromOne);
       }

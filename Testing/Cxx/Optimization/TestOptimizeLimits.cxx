@@ -189,7 +189,7 @@ void testSmall(CellType type, int cells)
   TAUTLINE_CHECK(result.iterations <= 15);
 }
 
-/// Points that slide in planes stay there, with limits, too.
+/// Points that slide in planes stay there, also with limits.
 void testSliding()
 {
   constexpr double limit = 0.05;
@@ -221,7 +221,7 @@ void testSliding()
   TAUTLINE_CHECK(along > 0.5 * limit);
 }
 
-/// Points of a curved surface, which go back to it after each step, keep their limits, too.
+/// Points of a curved surface, which go back to it after each step, also keep their limits.
 void testSurface(CellType type, bool project)
 {
   const Context context(
@@ -247,7 +247,7 @@ void testSurface(CellType type, bool project)
 }
 
 /// Limits count from the input, not from what untangling leaves: where that goes too far, it is an
-/// error, on ranks, too.
+/// error, also on ranks.
 void testUntangling()
 {
   const MeshData data = stretched(CellType::Tetrahedron, 8,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Optimization and untangling on ranks: the points do not depend on how the mesh is cut, and are as
-// good as those of one process in its own order.
+// good as on one process in its own order.
 #include "OptimizingRanks.h"
 #include "Registry.h"
 #include "tautline/Untangling/Untangle.h"
@@ -218,7 +218,7 @@ void testFailure()
   TAUTLINE_CHECK_EQUAL(errors, 3);
 }
 
-void testRefusals()
+void testRejections()
 {
   const MeshData whole = jittered(CellType::Tetrahedron, 2, 0.1);
   SingleRank group;
@@ -302,5 +302,5 @@ TAUTLINE_TEST(TestOptimizeRanks)
   TAUTLINE_RUN(testConvergenceOfAll());
   TAUTLINE_RUN(testElementData());
   TAUTLINE_RUN(testFailure());
-  TAUTLINE_RUN(testRefusals());
+  TAUTLINE_RUN(testRejections());
 }

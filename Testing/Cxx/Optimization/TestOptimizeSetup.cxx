@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is prepared before an optimization and measured after it: the same for any number of
-// threads, and what is handed on is what would be measured anew.
+// The preparation before an optimization and the measurement after it: the same for any number of
+// threads, and the values that are passed on equal a new measurement.
 #include "Optimizing.h"
 #include "Registry.h"
 #include "tautline/Core/CountingSort.h"
@@ -133,7 +133,7 @@ void checkDuplicateAmongMany(MeshData data)
   TAUTLINE_CHECK(found.size() == 1 && found[0].cell == cells && found[0].original == 0);
 }
 
-/// Of meshes large enough for several parts, of one cell type and of two.
+/// For meshes large enough for several parts, of one cell type and of two.
 TAUTLINE_PART(testSimplexMesh)
 {
   for (const CellType type : { CellType::Tetrahedron, CellType::Triangle, CellType::Quadrilateral,
@@ -175,7 +175,7 @@ TAUTLINE_PART(testDuplicates)
   }
 }
 
-/// What the result says of its elements is what is measured on its points.
+/// The result's data on its elements equal a measurement on its points.
 TAUTLINE_PART(testVerified)
 {
   for (const CellType type : { CellType::Tetrahedron, CellType::Quadrilateral })

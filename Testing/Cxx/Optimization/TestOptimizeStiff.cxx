@@ -91,7 +91,7 @@ TAUTLINE_PART(testStiff)
       TAUTLINE_CHECK_EQUAL(result.invertedAfter, Index(0));
       TAUTLINE_CHECK_EQUAL(static_cast<std::size_t>(result.iterations), result.history.size() - 1);
     }
-    // Out of time, the best so far is returned: that of the sweeps, or of Newton's method.
+    // Out of time, the best result so far is returned, by the sweeps or by Newton's method.
     TAUTLINE_LET(OptimizeOptions, few, stopping.maximumIterations = 5);
     const OptimizeResult stopped = run(data, few);
     OptimizeOptions sweeps = few;

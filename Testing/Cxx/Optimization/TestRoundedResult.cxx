@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What rounded points of a result break is found on ranks as on one process, however the mesh is
-// cut.
+// Elements broken by rounded points of a result are found on ranks as on one process, however the
+// mesh is cut.
 #include "OptimizingRanks.h"
 #include "Registry.h"
 #include "tautline/Optimization/RoundedResult.h"
@@ -19,7 +19,7 @@ std::vector<double> rounded(std::vector<double> points, double step)
   return points;
 }
 
-/// What is broken, as a number that differs by each.
+/// The broken elements, as a number that differs by each.
 int faults(const RoundedResult& found)
 {
   return (found.lost > 0 ? 1 : 0) + (found.worseWorst ? 2 : 0) + (found.largerObjective ? 4 : 0);

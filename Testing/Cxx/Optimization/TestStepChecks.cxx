@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Steps of one vertex that are shortened or refused: before an element inverts, and where the way
+// Steps of one vertex that are shortened or rejected: before an element inverts, and where the way
 // back to a surface would invert, fold, turn over or worsen the elements.
 #include "Optimizing.h"
 #include "Registry.h"
@@ -217,7 +217,7 @@ struct Corner
   }
 };
 
-/// What is valid at its corners, but folded between them, is not placed on the surface.
+/// An element that is valid at its corners, but folded between them, is not placed on the surface.
 TAUTLINE_PART(testFoldedOnSurface)
 {
   constexpr CellType type = CellType::Hexahedron;

@@ -63,7 +63,7 @@ TAUTLINE_PART(testLimit)
   const Outcome free = runOn(data, 0);
   const double off = std::max(free.there, free.back);
   TAUTLINE_CHECK(off > 0.01);
-  // What the result says is what is measured here, but for the places in between.
+  // The result's numbers equal the measurement here, except for the places in between.
   TAUTLINE_CHECK(free.result.surfaceError > 0.8 * off && free.result.surfaceError < 1.05 * off);
   const double start = free.result.history.front().objective,
                unlimited = start - free.result.history.back().objective;
@@ -78,7 +78,7 @@ TAUTLINE_PART(testLimit)
     TAUTLINE_CHECK(limited.result.surfaceError <= tolerance);
     const Index held = limited.result.heldOnSurface;
     TAUTLINE_CHECK(held > 0 && held < limited.result.freeVertices);
-    // The mesh improves all the same, the more the wider the limit.
+    // The mesh still improves, the more the wider the limit.
     const double lowered = start - limited.result.history.back().objective;
     TAUTLINE_CHECK(lowered > last && lowered > 0.3 * unlimited);
     last = lowered;
@@ -103,7 +103,7 @@ std::vector<Triangle> trianglesOf(const MeshData& data, const std::vector<double
 }
 
 /// A surface in space stays within the default tolerance, both ways, and keeps its volume: one of a
-/// CAD program with long facets along fillets, and a fine round one. It improves all the same.
+/// CAD program with long facets along fillets, and a fine round one. It still improves.
 TAUTLINE_PART(testSurfaces)
 {
   MeshData ball = sphereSurface(CellType::Triangle, 12);
@@ -232,7 +232,7 @@ Leaving leave(const MeshData& data, const std::function<void(vtkMeshOptimizer*)>
   TAUTLINE_SET(result, off = std::max(distance(before, after), distance(after, before)), left = 0);
   for (std::size_t p = 0; p < result.points.size() / 3; ++p)
   {
-    // What was on a plane of the block, in the coordinates of its cubes.
+    // The points that were on a plane of the block, in the coordinates of its cubes.
     const auto cubes = [](const double* x) {
       return Vec3{ (x[0] - x[1] / tangent) / unit, x[1] / unit, x[2] / unit };
     };
@@ -318,7 +318,7 @@ TAUTLINE_PART_SLOW(testLeaving)
   TAUTLINE_CHECK_EQUAL(limited.left, Index(0));
 }
 
-/// Planar meshes and simplices, too; points stay on interfaces; with a Geometry, none leaves.
+/// Also planar meshes and simplices; points stay on interfaces; with a Geometry, none leaves.
 TAUTLINE_PART(testOtherMeshes)
 {
   constexpr double tolerance = 0.005;
@@ -385,7 +385,7 @@ TAUTLINE_PART(testOtherMeshes)
       }
     }
     TAUTLINE_CHECK(worst[1] > worst[0] + 0.005);
-    // The allowance of the mean is that of both kinds of rounds together.
+    // The allowance of the mean covers both kinds of rounds together.
     TAUTLINE_CHECK(mean[1] <= mean[0] * (1 + allowance));
     if (type == CellType::Hexahedron)
     {
@@ -491,7 +491,7 @@ private:
   SurfaceLimit Limit;
 };
 
-/// Vertices slide on flat parts and along straight edges, and nowhere else.
+/// Vertices slide only on flat parts and along straight edges.
 TAUTLINE_PART(testFlatParts)
 {
   constexpr Index n = 4;
@@ -520,7 +520,7 @@ TAUTLINE_PART(testFlatParts)
     TAUTLINE_CHECK(steps >= 8 && steps <= 10);
   }
 
-  // A sheet that is bent at x = 2: its border counts, too.
+  // A sheet that is bent at x = 2: its border also counts.
   MeshData sheet = blockMesh(CellType::Triangle, n, n, 0);
   sheet.transform(TAUTLINE_PLACE(std::min(p[0], 2.0), p[1], std::max(p[0] - 2, 0.0)));
   SteppedMesh bent(sheet);

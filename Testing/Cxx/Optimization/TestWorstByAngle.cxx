@@ -95,7 +95,7 @@ TAUTLINE_PART(testKernel)
         improved = after;
       }
     }
-    // Of all tetrahedra, as stated. Those that cannot move have larger ones than Best shape gives.
+    // Over all tetrahedra. Those that cannot move have larger ones than Best shape gives.
     const double angle = smallestAngle(improved, false);
     for (const Preset preset : presets)
     {

@@ -78,7 +78,7 @@ void testPatches(CellType type)
   TAUTLINE_CHECK(std::count(seen.begin(), seen.end(), 0) < data.numberOfCells());
 }
 
-/// Blocks of one colour, whose vertices move at the same time, have no cell in common.
+/// Blocks of one color, whose vertices move at the same time, have no cell in common.
 void testBlocks(CellType type)
 {
   const Context context(topology(type).name);

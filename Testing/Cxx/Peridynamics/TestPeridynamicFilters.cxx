@@ -74,7 +74,7 @@ TAUTLINE_PART(testStiffness)
   }
   TAUTLINE_CHECK_EQUAL(entries, column(filter, "Nonzeros"));
   TAUTLINE_CHECK_NEAR(square, 1.0, 1e-9);
-  // About that of the Laplacian with factor pi / 6: 0.0737 / (pi / 6) = 0.141, or more.
+  // About the Laplacian's with factor pi / 6: 0.0737 / (pi / 6) = 0.141, or more.
   TAUTLINE_CHECK(highest > 0.13 && highest < 0.25);
   auto* picture = vtkImageData::SafeDownCast(filter->GetOutputDataObject(2));
   TAUTLINE_CHECK_EQUAL(picture->GetNumberOfPoints(), 1600);
@@ -220,7 +220,7 @@ TAUTLINE_PART(testErrors)
   check(filter, "time limit");
   filter->SetTimeLimit(0.0);
   filter->SetInputData(toGrid(blockMesh(CellType::Quadrilateral, 3, 3, 0)));
-  check(filter, "9 cells that are no triangles (quadrilateral): run Tetrahedralize first");
+  check(filter, "9 cells that are not triangles (quadrilateral): run Tetrahedralize first");
   filter->SetInputData(toGrid(blockMesh(CellType::Tetrahedron, 2, 2, 2)));
   check(filter, "no triangles (tetrahedron)");
   filter->SetInputData(toGrid(quadraticOf(blockMesh(CellType::Triangle, 2, 2, 0))));

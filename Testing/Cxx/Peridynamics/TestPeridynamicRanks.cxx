@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Nonlocal matrices assembled by ranks that are threads: those of one rank, bitwise; what is wrong
-// on one rank, and what stops one, ends all.
+// Nonlocal matrices assembled by ranks that are threads equal the matrix of one rank, bitwise; an
+// error or an interruption of one rank ends all.
 #include "HorizonMeshes.h"
 #include "Registry.h"
 #include "ThreadRanks.h"

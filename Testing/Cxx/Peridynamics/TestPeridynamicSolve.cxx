@@ -377,7 +377,7 @@ TAUTLINE_PART_SLOW(testNearlyIncompressible)
 }
 
 //------------------------------------------------------------------------------
-TAUTLINE_PART(testRefusals)
+TAUTLINE_PART(testRejections)
 {
   const HorizonMesh mesh = horizonSquare(0.1, 1, 0.2);
   TAUTLINE_LET(PeridynamicOptions, options, constrained = false);

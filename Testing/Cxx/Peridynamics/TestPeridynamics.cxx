@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The nonlocal matrices: formulas, symmetry, definiteness, null spaces, the local limit, kernels,
-// threads, refusals; their interaction layer, disc, eigenvalues and solver.
+// threads, rejections; their interaction layer, disc, eigenvalues and solver.
 #include "HorizonMeshes.h"
 #include "Registry.h"
 #include "tautline/Peridynamics/InteractionLayer.h"
@@ -110,7 +110,7 @@ TAUTLINE_PART(testStructure)
 }
 
 //------------------------------------------------------------------------------
-/// What is known in closed form.
+/// Values known in closed form.
 TAUTLINE_PART(testFormulas)
 {
   // Constant kernel, constant basis: the diagonal is delta^-4 (|T| pi delta^2 - |T|^2).
@@ -192,7 +192,7 @@ TAUTLINE_PART(testLocalLimit)
     {
       options.horizon = 0.04 / (1 << level);
       const PeridynamicSystem system = assemblePeridynamics(mesh, options);
-      // The energy of x^2 on the unknown vertices, against that of the local form.
+      // The energy of x^2 on the unknown vertices, against the energy of the local form.
       const auto u =
         sampled(mesh, options.basis, [](double x, double y) { return x * (1 - x) * y * (1 - y); });
       std::vector<double> inside(system.matrix.size), all(u.size(), 0.0);
@@ -356,7 +356,7 @@ TAUTLINE_PART(testInteractionLayer)
     TAUTLINE_CHECK(addInteractionLayer(*inner, layer).points == made.points);
     layer.threads = 0;
   }
-  // Around a hole as well; the area is that of what it covers.
+  // Around a hole as well; the area equals the covered area.
   HorizonMesh ring = shakenSquare(12, 0, 0.0);
   HorizonMesh cut = ring;
   cut.triangles.clear();
@@ -484,39 +484,39 @@ TAUTLINE_PART(testEigenvalues)
 }
 
 //------------------------------------------------------------------------------
-TAUTLINE_PART(testRefusals)
+TAUTLINE_PART(testRejections)
 {
   const HorizonMesh mesh = horizonSquare(0.25, 1, 0.25);
   TAUTLINE_LET(PeridynamicOptions, good, horizon = 0.25);
-#define REFUSED(text, ...) \
+#define REJECTED(text, ...) \
   TAUTLINE_CHECK_THROWS(assemblePeridynamics(mesh, TAUTLINE_CHANGED(good, __VA_ARGS__)), text)
-#define REFUSED_MESH(text, ...) \
+#define REJECTED_MESH(text, ...) \
   TAUTLINE_CHECK_THROWS(assemblePeridynamics(TAUTLINE_CHANGED(mesh, __VA_ARGS__), good), text)
   const std::vector<Index>& t = mesh.triangles;
   using Flags = decltype(mesh.layer);
-  REFUSED(wording("horizon-is-0"), horizon = 0.0);
-  REFUSED(wording("horizon-is-nan"), horizon = std::nan(""));
-  REFUSED(wording("to-below-4"), kernel.exponent = 4.0);
-  REFUSED(wording("to-below-3"), kernel.exponent = 3.0, basis = PeridynamicBasis::Constant);
-  REFUSED("from 0", kernel.exponent = -0.5);
-  REFUSED(wording("to-below-6"), kernel.exponent = 6.0, model = PeridynamicModel::Elastic);
-  REFUSED(wording("an-interaction-layer-of-width-0-3"), horizon = 0.3);
-  REFUSED_MESH(wording("has-no-interaction-layer"), layer = Flags(mesh.layer.size(), 0));
-  REFUSED_MESH(wording("no-unknown"), givenPoints.clear(), layer = Flags(mesh.layer.size(), 1));
-  REFUSED_MESH(
+  REJECTED(wording("horizon-is-0"), horizon = 0.0);
+  REJECTED(wording("horizon-is-nan"), horizon = std::nan(""));
+  REJECTED(wording("to-below-4"), kernel.exponent = 4.0);
+  REJECTED(wording("to-below-3"), kernel.exponent = 3.0, basis = PeridynamicBasis::Constant);
+  REJECTED("from 0", kernel.exponent = -0.5);
+  REJECTED(wording("to-below-6"), kernel.exponent = 6.0, model = PeridynamicModel::Elastic);
+  REJECTED(wording("an-interaction-layer-of-width-0-3"), horizon = 0.3);
+  REJECTED_MESH(wording("has-no-interaction-layer"), layer = Flags(mesh.layer.size(), 0));
+  REJECTED_MESH(wording("no-unknown"), givenPoints.clear(), layer = Flags(mesh.layer.size(), 1));
+  REJECTED_MESH(
     wording("1-of-72-triangles-are-inverted-the"), triangles[15] = t[16], triangles[16] = t[15]);
-  REFUSED_MESH(wording("triangle-5-is-degenerate"), triangles[15] = t[16]);
-  REFUSED_MESH(wording("not-finite"), points[20] = std::nan(""));
-  REFUSED_MESH(wording("has-point-4000"), triangles[7] = 4000);
-  REFUSED(wording("mib-are-allowed"), memoryLimit = 1000.0);
-  REFUSED(wording("time-limit"), timeLimit = 1e-9);
-  REFUSED(
+  REJECTED_MESH(wording("triangle-5-is-degenerate"), triangles[15] = t[16]);
+  REJECTED_MESH(wording("not-finite"), points[20] = std::nan(""));
+  REJECTED_MESH(wording("has-point-4000"), triangles[7] = 4000);
+  REJECTED(wording("mib-are-allowed"), memoryLimit = 1000.0);
+  REJECTED(wording("time-limit"), timeLimit = 1e-9);
+  REJECTED(
     wording("stopped-by-the-user"), progress = [](double) { return false; });
-  REFUSED(wording("tabulated-kernel-needs"), kernel.shape = KernelShape::Table);
-  REFUSED(
+  REJECTED(wording("tabulated-kernel-needs"), kernel.shape = KernelShape::Table);
+  REJECTED(
     wording("width-of-the-gaussian"), kernel.shape = KernelShape::Gaussian, kernel.width = 0.0);
-  REFUSED("tolerance", tolerance = 0.0);
-  REFUSED(
+  REJECTED("tolerance", tolerance = 0.0);
+  REJECTED(
     wording("find-no-neighbour"), discretization = Discretization::Dissertation, horizon = 0.01);
   TAUTLINE_CHECK_THROWS(horizonSquare(0.1, 3, 0.2), wording("whole-number"));
   TAUTLINE_CHECK_EQUAL(layerDeficit(mesh, 0.25), 0.0);

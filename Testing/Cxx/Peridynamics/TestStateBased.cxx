@@ -15,7 +15,7 @@ using namespace tautline;
 
 namespace
 {
-/// Of the rule of degree 5 for the square of the dilatation, relative to the diagonal.
+/// The error of the rule of degree 5 for the square of the dilatation, relative to the diagonal.
 constexpr double RuleError = 5e-4;
 
 PeridynamicOptions stateBased(double nu, PlaneState state = PlaneState::Strain)
@@ -219,7 +219,7 @@ double energyOfPoints(const HorizonMesh& mesh, const PeridynamicOptions& options
   return energy;
 }
 
-/// Energy and forces are those of the formulas: of a free body, whose matrix has all functions.
+/// Energy and forces match the formulas, for a free body, whose matrix has all functions.
 TAUTLINE_PART(testEnergy)
 {
   HorizonMesh mesh = shakenSquare(4, 0, 0.0);
@@ -276,7 +276,8 @@ double energyOfHooke(double mu, double lambda)
   return sum / (n * n);
 }
 
-/// The energy of a smooth bump over that of Hooke's law, at a number of elements in the horizon.
+/// The energy of a smooth bump over the energy by Hooke's law, at a number of elements in the
+/// horizon.
 double energyRatio(int n, int layers, double nu)
 {
   const HorizonMesh mesh = shakenSquare(n, 2 * layers, 0.0);
@@ -301,7 +302,7 @@ TAUTLINE_PART_SLOW(testLocalLimit)
   for (const double nu : { 0.0, 0.45 })
   {
     const double coarse = 1.0 - energyRatio(16, 4, nu), fine = 1.0 - energyRatio(32, 4, nu);
-    std::printf("nu %.2f: energy below that of Hooke's law by %.5f and %.5f\n", nu, coarse, fine);
+    std::printf("nu %.2f: energy below Hooke's law by %.5f and %.5f\n", nu, coarse, fine);
     TAUTLINE_CHECK(coarse > 0.0 && coarse < 0.4);
     TAUTLINE_CHECK(fine > 0.0 && 3.0 * fine < coarse);
   }
@@ -407,7 +408,7 @@ HorizonMesh ring(int around, int across, double inner, double outer)
   return mesh;
 }
 
-/// A square of n by n cells in two triangles, slit from the middle of the left side to its centre.
+/// A square of n by n cells in two triangles, slit from the middle of the left side to its center.
 HorizonMesh slitSquare(int n, bool open)
 {
   HorizonMesh mesh = shakenSquare(n, 0, 0.0);
@@ -513,8 +514,8 @@ TAUTLINE_PART(testSharedVertex)
   TAUTLINE_CHECK(std::abs(assemblePeridynamics(apart, options).matrix.at(0, 1)) > 1e-3);
 }
 
-/// The energy of a free ring tends to that of a body whose bonds are cut at a circle: sums over
-/// pairs of points that see each other.
+/// The energy of a free ring tends to the energy of a body whose bonds are cut at a circle: sums
+/// over pairs of points that see each other.
 double energyOfVisiblePoints(double inner, double outer, double delta, int n, double* whole)
 {
   // Equal areas: rings of cells of about the same size.
@@ -582,7 +583,7 @@ TAUTLINE_PART(testCutEnergy)
 }
 
 //------------------------------------------------------------------------------
-TAUTLINE_PART(testRefusals)
+TAUTLINE_PART(testRejections)
 {
   const HorizonMesh mesh = shakenSquare(8, 2, 0.0);
   TAUTLINE_CHECK_THROWS(assemblePeridynamics(mesh, stateBased(0.3)), wording("twice-the-horizon"));

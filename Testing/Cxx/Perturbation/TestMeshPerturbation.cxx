@@ -381,7 +381,7 @@ TAUTLINE_PART(testWhatStays)
   data.addCell(
     CellType::Triangle, { 7 * 7 * 2 + 7 * 2 + 2, 7 * 7 * 2 + 7 * 2 + 3, 7 * 7 * 2 + 7 * 3 + 2 });
   TAUTLINE_CHECK_EQUAL(perturb(Mesh(data.view()), nullptr, {}).movable, 120);
-  // A point with NaN coordinates keeps its neighbours.
+  // A point with NaN coordinates keeps its neighbors.
   data.setPoint(7 * 7 * 5 + 7 * 5 + 5, { NAN, 0, 0 });
   const Perturbation result = perturb(Mesh(data.view()), nullptr, {});
   TAUTLINE_CHECK(result.movable < 120 && result.moved > 0 && result.invertedAfter == 0);
@@ -478,7 +478,7 @@ TAUTLINE_PART(testCurvedCells)
     TAUTLINE_CHECK_EQUAL(filter->GetInvertedAfter(), 0);
     TAUTLINE_CHECK_EQUAL(invalid(moved), 0);
     TAUTLINE_CHECK(contains(filter->GetSummary(), wording("corners-moved-less-than-drawn")));
-    // Nodes inside have moved, those of the boundary have not.
+    // Nodes inside have moved, nodes on the boundary have not.
     const FollowingNodes nodes(Mesh(data.view()));
     Index followed = 0;
     for (const Index i : nodes.points())
@@ -507,7 +507,7 @@ TAUTLINE_PART(testAbortAndProgress)
   TAUTLINE_CHECK(contains(filter->GetSummary(), wording("stopped-early")));
 }
 
-TAUTLINE_PART(testRefusedOptions)
+TAUTLINE_PART(testRejectedOptions)
 {
   const MeshData data = blockMesh(CellType::Triangle, 3, 3, 0);
   TAUTLINE_LET(PerturbOptions, options, percentage = 101);

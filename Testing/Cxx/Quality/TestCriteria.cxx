@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Quality criteria: grades and penalties against their definition, the index and the verdict by
-// hand, and what the reader refuses.
+// hand, and what the reader rejects.
 #include "Registry.h"
 #include "VtkMeshes.h"
 #include "tautline/Quality/Criteria.h"
@@ -37,7 +37,7 @@ TAUTLINE_PART(testGrades)
   TAUTLINE_CHECK(gradeOf(down, 0.2) == Grade::Warning);
   TAUTLINE_CHECK(gradeOf(down, -1) == Grade::Failed);
   TAUTLINE_CHECK_NEAR(penaltyOf(down, 0.45), 0.375, 1e-15);
-  // Equal neighbours: the better penalty up to the limit, the worse one beyond it.
+  // Equal neighbors: the better penalty up to the limit, the worse one beyond it.
   const QualityLimits step = { 0, 1, 1, 1, 2 };
   TAUTLINE_CHECK_NEAR(penaltyOf(step, 1), 0.75, 1e-15);
   TAUTLINE_CHECK_NEAR(penaltyOf(step, 0.5), 0.125, 1e-15);
@@ -66,7 +66,7 @@ TAUTLINE_PART(testParse)
   TAUTLINE_CHECK_THROWS(presetCriteria("nastrin"), wording("there-are-fem-skewness-optistruct"));
 }
 
-TAUTLINE_PART(testRefused)
+TAUTLINE_PART(testRejected)
 {
   const auto all = [](const std::string& limits) { return R"({ "all": )" + limits + " }"; };
   const std::string one = R"({ "metric": "imr", "weight": WEIGHT, "limits": )" + all(rising) + " }";
@@ -95,10 +95,10 @@ TAUTLINE_PART(testRefused)
     { R"({ "criteria": [ )" + weighted("1") + ", " + weighted("1") + " ] }",
       wording("has-a-criterion-already") },
   };
-  for (const auto& refused : cases)
+  for (const auto& rejected : cases)
   {
-    const Context context(refused.first);
-    TAUTLINE_CHECK_THROWS(parseCriteria(refused.first), refused.second);
+    const Context context(rejected.first);
+    TAUTLINE_CHECK_THROWS(parseCriteria(rejected.first), rejected.second);
   }
 }
 
@@ -152,7 +152,7 @@ TAUTLINE_PART(testPresets)
   TAUTLINE_CHECK_EQUAL(criteriaPresets().size(), std::size_t{ 14 });
 }
 
-/// Each solver has a preset for shells and one for solids, and the labels tell them apart.
+/// Each solver has a preset for shells and one for solids, and the labels distinguish them.
 TAUTLINE_PART(testShellsAndSolids)
 {
   for (const std::string& preset : criteriaPresets())
@@ -217,7 +217,7 @@ void testFilter(const std::string& folder)
     TAUTLINE_CHECK_NEAR(cellValue(filter, "QualityIndex", cell), indices[cell], 1e-14);
     sum += indices[cell];
   }
-  TAUTLINE_CHECK_NEAR(cellValue(filter, "imr", 1), imrOf(0.1), 1e-14); // measured, too
+  TAUTLINE_CHECK_NEAR(cellValue(filter, "imr", 1), imrOf(0.1), 1e-14); // also measured
   TAUTLINE_CHECK_EQUAL(std::string(filter->GetVerdict()), "failed");
   TAUTLINE_CHECK_NEAR(filter->GetQualityIndex(), sum / 4, 1e-14);
   TAUTLINE_CHECK(

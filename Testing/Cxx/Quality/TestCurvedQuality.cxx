@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Element Quality on curved cells: their validity and smallest determinant hold for the whole cell,
-// though the corners are those of a valid one.
+// though the corners form a valid one.
 #include "Elements/CurvedElements.h"
 #include "Registry.h"
 #include "VtkMeshes.h"
@@ -224,7 +224,7 @@ TAUTLINE_PART(testWedgesAndReversedCells)
       TAUTLINE_CHECK_NEAR(measured.minimum[0], 1.0, 1e-7);
     }
   }
-  // Of two tetrahedra that share a face, the second is listed in the opposite order.
+  // The second of two tetrahedra that share a face is listed in the opposite order.
   auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
@@ -264,7 +264,7 @@ TAUTLINE_PART(testWedgesAndReversedCells)
   TAUTLINE_CHECK_NEAR(measured.minimum[1], 1.0, 1e-7);
 }
 
-/// What is not supported keeps the verdict of its corners.
+/// Unsupported cells keep the verdict of their corners.
 TAUTLINE_PART(testUnsupported)
 {
   MeshData data;
@@ -339,7 +339,7 @@ TAUTLINE_PART(testCombinations)
   const std::vector<const char*> metrics = { "mean_ratio", "imr", "condition_number",
     "scaled_jacobian", "size", "mu_shape" };
   const AllMeasured mean = measureAll(grid, metrics);
-  // The mean of 2 x / (x^2 + 1) over x from 1 to 3, and that of its reciprocal.
+  // The mean of 2 x / (x^2 + 1) over x from 1 to 3, and of its reciprocal.
   TAUTLINE_CHECK_NEAR(mean.value("mean_ratio", 0), 0.5 * std::log(5.0), 1e-5);
   TAUTLINE_CHECK_NEAR(mean.value("imr", 0), 1 + std::log(3.0) / 4, 2e-5);
   TAUTLINE_CHECK_NEAR(mean.value("mu_shape", 0), std::log(3.0) / 4, 2e-5);
@@ -349,7 +349,7 @@ TAUTLINE_PART(testCombinations)
   TAUTLINE_CHECK_NEAR(worst.value("mean_ratio", 0), 0.6, 1e-9);
   TAUTLINE_CHECK_NEAR(worst.value("imr", 0), 1 / 0.6, 1e-8);
   TAUTLINE_CHECK_NEAR(worst.value("condition_number", 0), 1 / 0.6, 1e-8);
-  // Of the samples, which are inside.
+  // The minimum of the samples, which are inside.
   TAUTLINE_CHECK(worst.value("mu_shape", 0) < 1 / 0.6 - 1 && worst.value("mu_shape", 0) > 0.5);
   const AllMeasured power = measureAll(grid, metrics, vtkElementQuality::POWER_MEAN);
   TAUTLINE_CHECK(power.value("imr", 0) > mean.value("imr", 0));
@@ -357,8 +357,8 @@ TAUTLINE_PART(testCombinations)
   TAUTLINE_CHECK(power.value("mean_ratio", 0) < mean.value("mean_ratio", 0));
 }
 
-/// A folded cell has negative metrics, though no sample is in the fold; the area is that of the
-/// curved cell, the place of the minimum is on the folded edge.
+/// A folded cell has negative metrics, though no sample is in the fold; the area is the curved
+/// cell's, the place of the minimum is on the folded edge.
 TAUTLINE_PART(testFoldOfNoSample)
 {
   const double c = 0.2499;

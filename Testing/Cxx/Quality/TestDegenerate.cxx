@@ -195,7 +195,7 @@ TAUTLINE_PART(testStraightAndInverted)
         TAUTLINE_CHECK(valuesOf(data, info.metric, options)[0] < 0);
       }
     }
-    // Its corner is that of the triangle 1 2 3, of edges 1 and sqrt 2 and twice the area 1.
+    // Its corner is a corner of the triangle 1 2 3, of edges 1 and sqrt 2 and twice the area 1.
     TAUTLINE_CHECK_NEAR(valuesOf(data, Metric::MeanRatio, options)[0], -2.0 / 3, 1e-14);
   }
 }

@@ -161,7 +161,7 @@ TAUTLINE_PART(testFilter)
   TAUTLINE_CHECK(mesh->GetCellData()->GetArray("midnode_angle")->GetTuple1(0) > 30);
   TAUTLINE_CHECK(!mesh->GetCellData()->GetArray("distortion"));
   TAUTLINE_CHECK(contains(filter->GetSummary(), elementChecks()[0].label));
-  // A preset measures its checks, too: the bend of 2 atan(0.8 / 2) has a warning.
+  // A preset also measures its checks: the bend of 2 atan(0.8 / 2) has a warning.
   TAUTLINE_SET(*filter, SetChecks(""), SetCriteria("nastran_solids"), Update());
   mesh = vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0));
   TAUTLINE_CHECK(mesh->GetCellData()->GetArray("midnode_angle"));

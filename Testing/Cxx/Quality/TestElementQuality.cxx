@@ -372,7 +372,7 @@ TAUTLINE_PART(testErrors)
 
   const auto grid = toGrid(triangles({ height }));
   filter->SetInputData(grid);
-  const auto refused = [&](const char* part)
+  const auto rejected = [&](const char* part)
   {
     messages.clear();
     TAUTLINE_SET(filter, Modified(), Update());
@@ -381,19 +381,19 @@ TAUTLINE_PART(testErrors)
     TAUTLINE_CHECK_EQUAL(output->GetNumberOfCells(), 0);
   };
   filter->SetTargetType(vtkElementQuality::REFERENCE);
-  refused(wording("there-is-none"));
+  rejected(wording("there-is-none"));
   filter->SetInputData(1, toGrid(triangles({ height, height })));
-  refused(wording("the-reference-mesh-has-6-points"));
+  rejected(wording("the-reference-mesh-has-6-points"));
   filter->SetInputData(1, toGrid(triangles({ 0.0 })));
-  refused(wording("inverted-or-degenerate-in-the-reference-mesh"));
+  rejected(wording("inverted-or-degenerate-in-the-reference-mesh"));
   filter->SetTargetType(vtkElementQuality::SIZE);
-  refused(wording("needs-a-size"));
+  rejected(wording("needs-a-size"));
   TAUTLINE_NEW(vtkDoubleArray, sizes, SetName("sizes"), InsertNextValue(-1));
   grid->GetCellData()->AddArray(sizes);
   filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "sizes");
-  refused(wording("sizes-must-be-positive"));
+  rejected(wording("sizes-must-be-positive"));
   TAUTLINE_SET(filter, SetTargetType(vtkElementQuality::IDEAL), SetEpsilon(0));
-  refused(wording("epsilon-positive"));
+  rejected(wording("epsilon-positive"));
 }
 
 TAUTLINE_PART(testThreads)
@@ -458,7 +458,7 @@ TAUTLINE_PART(testBad)
 
 #if VTK_VERSION_NUMBER < VTK_VERSION_CHECK(9, 4, 0)
 /// Lists of faces as VTK's reader of .pvtu files leaves them are not passed on, and the input keeps
-/// them; those of a polyhedron are.
+/// them; the faces of a polyhedron are.
 TAUTLINE_PART(testStrayFaces)
 {
   const auto grid = toGrid(blockMesh(CellType::Tetrahedron, 2, 2, 2));

@@ -11,7 +11,7 @@ using namespace tautline;
 namespace
 {
 constexpr int cellsPerMesh = 500;
-/// Of each cell type: 6 x 6 x 20 x 500 = 360,000 cells, under the sanitizers 36,000.
+/// For each cell type: 6 x 6 x 20 x 500 = 360,000 cells, under the sanitizers 36,000.
 constexpr int meshesPerKind = TAUTLINE_ADDRESS_SANITIZER ? 2 : 20;
 constexpr int malformedViews = 3000;
 constexpr int fraction = 5; // of these in the fast run

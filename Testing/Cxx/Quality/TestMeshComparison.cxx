@@ -223,11 +223,11 @@ TAUTLINE_PART(testKindsOfInput)
   TAUTLINE_CHECK_EQUAL(cellOf(filter, "Equal"), 0);
 }
 
-TAUTLINE_PART(testRefusals)
+TAUTLINE_PART(testRejections)
 {
   vtkNew<vtkMeshComparison> filter;
   Messages messages(filter);
-  auto refuses = [&](vtkDataObject* before, vtkDataObject* after, const std::string& part)
+  auto rejects = [&](vtkDataObject* before, vtkDataObject* after, const std::string& part)
   {
     const Context context(part);
     messages.clear();
@@ -239,23 +239,23 @@ TAUTLINE_PART(testRefusals)
   };
   const MeshData mesh = blockMesh(CellType::Triangle, 2, 2, 0);
   auto grid = toGrid(mesh);
-  refuses(grid, toGrid(blockMesh(CellType::Triangle, 3, 2, 0)),
+  rejects(grid, toGrid(blockMesh(CellType::Triangle, 3, 2, 0)),
     wording("the-first-mesh-has-9-points-the"));
-  refuses(grid, toGrid(blockMesh(CellType::Quadrilateral, 2, 2, 0)),
+  rejects(grid, toGrid(blockMesh(CellType::Quadrilateral, 2, 2, 0)),
     wording("the-first-mesh-has-8-cells-the"));
   MeshData other = mesh;
   std::swap(other.connectivity[3 * 5], other.connectivity[3 * 5 + 1]);
-  refuses(grid, toGrid(other), wording("cell-5-has-the-points"));
+  rejects(grid, toGrid(other), wording("cell-5-has-the-points"));
   other = TAUTLINE_CHANGED(mesh, types[6] = VTK_POLYGON);
-  refuses(grid, toGrid(MeshData(blockMesh(CellType::Tetrahedron, 1, 1, 1))), "points");
+  rejects(grid, toGrid(MeshData(blockMesh(CellType::Tetrahedron, 1, 1, 1))), "points");
   vtkNew<vtkMultiBlockDataSet> one, two;
   one->SetBlock(0, grid);
   TAUTLINE_SET(two, SetBlock(0, grid), SetBlock(1, grid));
-  refuses(one, two, wording("first-at-block-2"));
-  refuses(grid, two, wording("extract-block"));
+  rejects(one, two, wording("first-at-block-2"));
+  rejects(grid, two, wording("extract-block"));
   filter->AddMetricByName("mu_98");
   MeshData surface = TAUTLINE_CHANGED(mesh, setPoint(4, { 1, 1, 1 }));
-  refuses(toGrid(surface), toGrid(surface), wording("without-orientation"));
+  rejects(toGrid(surface), toGrid(surface), wording("without-orientation"));
 }
 
 } // anonymous namespace

@@ -84,7 +84,7 @@ void testFront(bool frontFirst)
   TAUTLINE_CHECK(green < 0.01 * red); // rounding at the margin
 }
 
-/// Of a cube of 3 x 3 x 3 hexahedra, the cell in the middle is hidden until it is highlighted.
+/// The cell in the middle of a cube of 3 x 3 x 3 hexahedra is hidden until it is highlighted.
 TAUTLINE_PART(testInside)
 {
   MeshData data;
@@ -116,7 +116,7 @@ TAUTLINE_PART(testInside)
     }
   }
   TAUTLINE_CHECK_EQUAL(before, 0);
-  // A ninth of the picture of the cube, but for the edges.
+  // A ninth of the picture of the cube, except for the edges.
   TAUTLINE_CHECK_RELATIVE(after / (covered(seen) * Width * Height), 1.0 / 9, 0.25);
   TAUTLINE_CHECK(isRed(pixel(seen, Width / 2, Height / 2 + 8)));
   TAUTLINE_CHECK(!isRed(pixel(hidden, Width / 2, Height / 2 + 8)));

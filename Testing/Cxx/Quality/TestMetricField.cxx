@@ -178,11 +178,11 @@ TAUTLINE_PART(testContour)
   TAUTLINE_CHECK(onCircle > 100);
 }
 
-TAUTLINE_PART(testRefusals)
+TAUTLINE_PART(testRejections)
 {
   vtkNew<vtkMetricField> field;
   Messages messages(field);
-  auto refuses = [&](const std::string& part)
+  auto rejects = [&](const std::string& part)
   {
     messages.clear();
     field->Update();
@@ -190,13 +190,13 @@ TAUTLINE_PART(testRefusals)
     TAUTLINE_CHECK_EQUAL(field->GetOutput()->GetNumberOfPoints(), 0);
   };
   TAUTLINE_SET(field, AddMetricByName("width_ratio"), SetCellToTetrahedron());
-  refuses(wording("aspect-ratio-w-w-is-not-defined"));
+  rejects(wording("aspect-ratio-w-w-is-not-defined"));
   TAUTLINE_SET(field, ClearMetrics(), SetVertex2(0.3, 0.1, 0.7), SetVertex3(0.99, 0.33, 2.31));
-  refuses(wording("are-on-a-line"));
+  rejects(wording("are-on-a-line"));
   TAUTLINE_SET(field, SetCellToTriangle(), SetVertex2(0, 0, 5));
-  refuses("coincide");
+  rejects("coincide");
   TAUTLINE_SET(field, SetVertex2(1, 0, 0), SetBounds(1, 1, 0, 2, 0, 0));
-  refuses("Along x");
+  rejects("Along x");
   messages.clear();
   field->AddMetric(99);
   TAUTLINE_CHECK(messages.has(wording("no-metric-number-99")));
@@ -224,8 +224,8 @@ vtkPointData* fieldAt(
   return field->GetOutput()->GetPointData();
 }
 
-/// At extreme scales and far from the origin the values are those of an ordinary place, times a
-/// power of the scale, or refused by name.
+/// At extreme scales and far from the origin the values equal the values of an ordinary place,
+/// times a power of the scale, or rejected by name.
 TAUTLINE_PART(testScales)
 {
   for (int cell : { vtkMetricField::TRIANGLE, vtkMetricField::TETRAHEDRON })
@@ -273,14 +273,14 @@ TAUTLINE_PART(testScales)
       double size, place;
       const char* name;
       const char* text;
-    } refused[] = { { 1e-150, 0, "mu_size_squared", "is beyond the range of double precision" },
+    } rejected[] = { { 1e-150, 0, "mu_size_squared", "is beyond the range of double precision" },
       { 1e150, 0, "mu_size_squared", "is beyond the range of double precision" },
       { 1e-200, 0, "size", "is beyond the range of double precision" },
       { 1e-12, 1e12, "imr", "Bounds must increase and be finite" },
       { 1e308, 0, "imr", "Bounds must increase and be finite" },
       { 0, 0, "imr", "Bounds must increase and be finite" },
       { std::nan(""), 0, "imr", "Bounds must increase and be finite" } };
-    for (const auto& at : refused)
+    for (const auto& at : rejected)
     {
       const Context context(std::to_string(std::log10(at.size)) + " " + at.name);
       messages.clear();

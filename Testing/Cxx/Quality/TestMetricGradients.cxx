@@ -26,7 +26,7 @@ struct Cloud
   CellType type;
   bool valid;
   MeshData data;
-  std::vector<Vec3> directions; ///< in which points may move: two in a plane, else three
+  std::vector<Vec3> directions; ///< in which points may move: two in a plane, otherwise three
   Dimension dimension;
 };
 

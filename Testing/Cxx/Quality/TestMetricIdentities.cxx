@@ -48,7 +48,7 @@ TAUTLINE_PART(testTriangles)
       { "edge_ratio", root2 }, { "aspect_ratio", root2 * (2 + root2) / (2 * root3) },
       { "width_ratio", 1 }, { "min_angle", 45 }, { "max_angle", 90 }, { "equiangle_skew", 0.25 },
       { "scaled_jacobian", std::sqrt(0.5) * 2 / root3 }, { "size", 0.5 } });
-  // Dissertation 4.5 and Figure 4.7: the aspect ratio of a right triangle is that of its legs.
+  // Dissertation 4.5 and Figure 4.7: the aspect ratio of a right triangle is the ratio of its legs.
   checkCell("legs 4 and 1", CellType::Triangle, { { 0, 0, 0 }, { 4, 0, 0 }, { 0, 1, 0 } },
     { { "W/w", 4 }, { "edge_ratio", std::sqrt(17.0) } });
   // Legs 3 and 4, hypotenuse 5: r = 1, R = 5/2.

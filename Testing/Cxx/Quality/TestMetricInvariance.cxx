@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What must not change a value: moving, turning, renumbering, scaling; and what a mirror must do.
+// Invariance of values under motion, rotation, renumbering and scaling; and the effect of a mirror.
 #include "Meshes.h"
 #include "Registry.h"
 

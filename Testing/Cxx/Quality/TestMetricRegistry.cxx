@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The facts of the registry, checked against the values of the metrics: names, ranges, direction,
-// barrier, differentiability, and the options that are refused.
+// barrier, differentiability, and the options that are rejected.
 #include "Meshes.h"
 #include "Registry.h"
 
@@ -208,7 +208,7 @@ void testKink(const MetricInfo& info, CellType type)
 }
 
 //------------------------------------------------------------------------------
-TAUTLINE_PART(testRefusedOptions)
+TAUTLINE_PART(testRejectedOptions)
 {
   const MeshData data = singleCell(CellType::Triangle, idealCell(CellType::Triangle));
   const Mesh mesh(data.view());

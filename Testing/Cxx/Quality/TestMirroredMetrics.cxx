@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The metrics of a server in its client: their facts are those that the server has sent, they are
 // found by name, but not evaluated; one that is registered here takes the place of a server's.
-// The filters refuse a user's metric that this process does not have.
+// The filters reject a user's metric that this process does not have.
 #include "Registry.h"
 #include "VtkMeshes.h"
 #include "tautline/Quality/Criteria.h"
@@ -33,10 +33,10 @@ MetricDescription description(const std::string& name)
   return d;
 }
 
-/// What a server sends that has a metric of the name.
+/// The message of a server that has a metric of the name.
 std::string sentBy(MetricDescription d, const std::string& name)
 {
-  // Here its texts are others, as those of the metric may be taken.
+  // Its texts differ here, because the metric's own may be in use.
   const std::string elsewhere = "Server";
   const auto rename = [](std::string& text, const std::string& from, const std::string& to)
   {
@@ -85,7 +85,7 @@ TAUTLINE_PART(testFacts)
   TAUTLINE_CHECK_THROWS(unregisterMetric("mirrored"), wording("no-metric-mirrored"));
   const std::string missing = missingMetric(static_cast<int>(info->metric));
   TAUTLINE_CHECK(
-    contains(missing, "'" + d.label + "' of a user is not registered in this process"));
+    contains(missing, "'" + d.label + "' is a user metric that is not registered in this process"));
   const MeshData data = movedBlock(CellType::Tetrahedron, 2, 0.1);
   std::vector<double> values(data.numberOfCells());
   TAUTLINE_CHECK_THROWS(
@@ -111,7 +111,7 @@ TAUTLINE_PART(testFacts)
   TAUTLINE_CHECK(*std::max_element(values.begin(), values.end()) > 0);
   unregisterMetric("mirrored");
 
-  // What is not a list of this version is left out.
+  // Anything that is not a list of this version is left out.
   for (const char* wrong : { "", "\n\n", "5\tLabel\n", "x\ty\tz", "1000001\t\t\t\t\t\t\t" })
   {
     mirrorUserMetrics(wrong);
@@ -135,7 +135,7 @@ TAUTLINE_PART(testFilters)
   vtkNew<vtkMeshOptimizer> optimizer;
   Messages others(optimizer);
   optimizer->SetInputData(grid);
-  const auto refuses = [&]
+  const auto rejects = [&]
   {
     others.clear();
     optimizer->Update();
@@ -143,10 +143,10 @@ TAUTLINE_PART(testFilters)
     TAUTLINE_CHECK_EQUAL(outputOf(optimizer)->GetNumberOfCells(), 0);
   };
   optimizer->SetWorstMetric(elsewhere);
-  refuses();
+  rejects();
   TAUTLINE_SET(optimizer, SetWorstMetric(-1), SetPreset(vtkMeshOptimizer::CUSTOM),
     SetNumberOfObjectives(1), SetMetric1(elsewhere));
-  refuses();
+  rejects();
   optimizer->SetMetric1(0);
   others.clear();
   optimizer->Update();

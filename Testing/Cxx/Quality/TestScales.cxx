@@ -41,7 +41,7 @@ bool hasCubeRoot(const MetricInfo& info, bool solid)
       (m == Metric::InverseMeanRatio || m == Metric::MeanRatio || m == Metric::ShapeBarrier));
 }
 
-/// Values and gradients against those of the mesh of ordinary size.
+/// Values and gradients against the mesh of ordinary size.
 void compare(const MetricInfo& info, const MeshData& data, int exponent)
 {
   const Context context(std::string(info.name) + ", 2^" + std::to_string(exponent));
@@ -52,7 +52,7 @@ void compare(const MetricInfo& info, const MeshData& data, int exponent)
                   found = gradientsOf(farMesh, info.metric);
   const std::vector<double> values = valuesOf(farMesh, info.metric),
                             ordinary = valuesOf(mesh, info.metric);
-  // Cube roots are right to rounding, all else is exact.
+  // Cube roots are right to rounding, the rest is exact.
   const double tolerance = hasCubeRoot(info, mesh.dimension() == Dimension::Volume) ? 1e-14 : 0.0;
   const auto check = [tolerance](double actual, double x, int shift, double size)
   {
@@ -193,13 +193,13 @@ TAUTLINE_PART(testTensors)
   }
 }
 
-/// What double precision cannot hold is counted, and the error names metric and remedy.
+/// Values outside double precision are counted, and the error names metric and remedy.
 TAUTLINE_PART(testBeyond)
 {
   const auto beyond = [](CellType type, int exponent, Metric metric, bool inverted = false)
   {
     MeshData data = singleCell(type, idealCell(type));
-    // A neighbour of ordinary shape keeps a planar mesh upright.
+    // A neighbor of ordinary shape keeps a planar mesh upright.
     data.transform(TAUTLINE_PLACE(inverted ? -p[0] : p[0], p[1], p[2]));
     const MeshData far = scaled(data, exponent);
     double value = 0;
@@ -250,7 +250,7 @@ TAUTLINE_PART(testTogether)
   }
 }
 
-/// A vertex astray in a mesh of ordinary size is no reason to refuse it: its cells are not finite.
+/// A vertex astray in a mesh of ordinary size is no reason to reject it: its cells are not finite.
 TAUTLINE_PART(testStray)
 {
   MeshData data = blockMesh(CellType::Tetrahedron, 3, 3, 3);
@@ -325,8 +325,8 @@ TAUTLINE_PART(testFrame)
   TAUTLINE_CHECK(points == distant.points);
 }
 
-/// What sums over elements refuses cells of extreme size by name.
-TAUTLINE_PART(testRefusal)
+/// Filters that sum over elements reject cells of extreme size by name.
+TAUTLINE_PART(testRejection)
 {
   const MeshData data = scaled(blockMesh(CellType::Triangle, 2, 2, 0), -498);
   requireOrdinaryScale(scaled(data, 450).view(), "Anything");

@@ -64,8 +64,8 @@ TAUTLINE_PART(testMeasured)
   TAUTLINE_CHECK_EQUAL(countValidity(cells.validity.data(), nullptr, 8).valid, 4);
 }
 
-/// The worst value is one of the measured ones: of an inverted element if there are any, else the
-/// extreme in the direction of the metric.
+/// The worst value is one of the measured ones: of an inverted element if there are any, otherwise
+/// the extreme in the direction of the metric.
 TAUTLINE_PART(testWorstValue)
 {
   const auto worst = [](const MetricInfo& info, const Cells& cells)
@@ -121,7 +121,7 @@ TAUTLINE_PART(testByHand)
   TAUTLINE_CHECK_EQUAL(single.standardDeviation, 0.0);
   TAUTLINE_CHECK_EQUAL(single.quantiles[0], 2.0);
   TAUTLINE_CHECK_EQUAL(single.quantiles[6], 2.0);
-  // The acceptable range is that of the dimension: minimum angles down to 20 or to 15 degrees.
+  // The acceptable range depends on the dimension: minimum angles down to 20 or to 15 degrees.
   std::vector<double> angles = { 10, 17, 30 };
   const MetricInfo& angle = metricInfo(Metric::MinimumAngle);
   TAUTLINE_CHECK_EQUAL(summarize(angle, 2, angles).outsideAcceptable, 2);

@@ -219,7 +219,7 @@ void testTensor(CellType type, bool surface)
 }
 
 //------------------------------------------------------------------------------
-TAUTLINE_PART(testRefusals)
+TAUTLINE_PART(testRejections)
 {
   Random random(9);
   const MeshData data = randomMesh(CellType::Quadrilateral, false, random);

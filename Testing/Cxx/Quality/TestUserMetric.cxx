@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Metrics that are registered at run time: copies of built-in ones have their values and, by
 // automatic differentiation, their gradients; they take part in every objective and are optimized
-// to the same mesh. What registration refuses; numbers, names and lists.
+// to the same mesh. Errors of registration; numbers, names and lists.
 #include "Blocks.h"
 #include "Registry.h"
 #include "tautline/Objectives/ObjectiveSum.h"
@@ -394,7 +394,7 @@ void testOptimize(const std::vector<Twin>& pairs)
 }
 
 /// Where a formula has no value the objective is infinite, whatever the template and combination;
-/// no optimizer goes there, and an input that is there is refused.
+/// no optimizer goes there, and an input that is there is rejected.
 void testWithoutValue()
 {
   MetricDescription d = copyOf(Metric::InverseMeanRatio);
@@ -440,7 +440,7 @@ void testWithoutValue()
   unregisterMetric("limited");
 }
 
-/// The names are found, listed and described; the numbers are those of the names.
+/// The names are found, listed and described; the numbers match the names.
 void testRegistry(const std::vector<Twin>& pairs)
 {
   TAUTLINE_CHECK_EQUAL(
@@ -466,22 +466,22 @@ void testRegistry(const std::vector<Twin>& pairs)
   TAUTLINE_CHECK(again == pairs[1].user);
 }
 
-void testRefused()
+void testRejected()
 {
   const auto attempt = [](MetricDescription d) { registerJacobianMetric(d, Ratio()); };
   const MetricDescription good = copyOf(Metric::InverseMeanRatio, "_x");
-#define REFUSED(change, text) TAUTLINE_CHECK_THROWS(attempt(TAUTLINE_CHANGED(good, change)), text)
-  REFUSED(name = "imr", wording("there-is-a-metric-imr"));
-  REFUSED(name = "mu_2", wording("there-is-a-metric-mu-2-shape"));
-  REFUSED(label = "Inverse mean ratio", wording("there-is-a-metric-inverse-mean-ratio"));
+#define REJECTED(change, text) TAUTLINE_CHECK_THROWS(attempt(TAUTLINE_CHANGED(good, change)), text)
+  REJECTED(name = "imr", wording("there-is-a-metric-imr"));
+  REJECTED(name = "mu_2", wording("there-is-a-metric-mu-2-shape"));
+  REJECTED(label = "Inverse mean ratio", wording("there-is-a-metric-inverse-mean-ratio"));
   for (const char* bad : { "", "My", "1x", "a b", "a\tb" })
   {
-    REFUSED(name = bad, wording("cannot-be-the-name"));
+    REJECTED(name = bad, wording("cannot-be-the-name"));
   }
-  REFUSED(formula = "a\tb", wording("control-characters"));
-  REFUSED(cellTypes = 0, wording("no-type-of-cell"));
-  REFUSED(full = (Range{ 2, 1 }), wording("a-range-ends-before-it-begins"));
-  REFUSED(direction = Direction::LargerIsBetter, wording("tends-to-infinity"));
+  REJECTED(formula = "a\tb", wording("control-characters"));
+  REJECTED(cellTypes = 0, wording("no-type-of-cell"));
+  REJECTED(full = (Range{ 2, 1 }), wording("a-range-ends-before-it-begins"));
+  REJECTED(direction = Direction::LargerIsBetter, wording("tends-to-infinity"));
   TAUTLINE_CHECK_THROWS(
     registerJacobianMetric(good, NotFinite()), wording("not-finite-on-a-valid"));
   TAUTLINE_CHECK_THROWS(
@@ -501,7 +501,7 @@ void testRefused()
 }
 
 /// A function of many elements at once: sums take its derivatives by differences, and optimizers
-/// that move one point after the other refuse it.
+/// that move one point after the other reject it.
 void testElements()
 {
   TAUTLINE_LET(MetricDescription, d, name = "centre_height", rotationInvariant = false);
@@ -573,6 +573,6 @@ TAUTLINE_TEST(TestUserMetric)
   TAUTLINE_RUN(testOptimize(pairs));
   TAUTLINE_RUN(testWithoutValue());
   TAUTLINE_RUN(testRegistry(pairs));
-  TAUTLINE_RUN(testRefused());
+  TAUTLINE_RUN(testRejected());
   TAUTLINE_RUN(testElements());
 }

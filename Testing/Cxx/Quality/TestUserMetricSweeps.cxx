@@ -215,7 +215,7 @@ TAUTLINE_PART(testAlong)
           TAUTLINE_CHECK_NEAR(slopes[r * stride + i], s, 1e-10 * (1 + std::abs(s)));
         }
       }
-      // Of |T|^2 and det T alone?
+      // A function of |T|^2 and det T alone?
       const double invariants[2] = { 3.2, 1.1 };
       double value = 0, derivatives[5];
       TAUTLINE_CHECK_EQUAL(
@@ -247,7 +247,7 @@ double distance(const std::vector<double>& a, const std::vector<double>& b)
   return largestOf<double>(0, a.size(), [&](std::size_t i) { return std::abs(a[i] - b[i]); });
 }
 
-/// Sweeps by a copy go where those of the original go; the cheapest derivatives suffice.
+/// Sweeps by a copy go where the original's sweeps go; the cheapest derivatives suffice.
 TAUTLINE_PART(testSweeps)
 {
   const Metric ratio = registerJacobianMetric(describe("s_ratio", true, true, true), Ratio());

@@ -90,7 +90,7 @@ const Comparison comparisons[] = {
   { "scaled Jacobian", tet, Q::TetScaledJacobian, M::ScaledJacobian },
   { "shape", tet, Q::TetShape, M::MeanRatio },
   { "mean ratio", tet, Q::TetMeanRatio, M::MeanRatio, Mean, Q::tetMeanRatioPower },
-  // Verdict adds the dihedral angles to those of the faces.
+  // Verdict adds the dihedral angles to the angles of the faces.
   { "equiangle skew", tet, Q::TetEquiangleSkew, M::EquiangleSkew, Mean, one, Relation::AtLeast },
 
   { "volume", hex, Q::HexVolume, M::Size },
@@ -99,7 +99,7 @@ const Comparison comparisons[] = {
   { "max edge ratio", hex, Q::HexMaxEdgeRatio, M::AspectRatio },
   { "condition", hex, Q::HexCondition, M::ConditionNumber, Worst },
   { "mean aspect Frobenius", hex, Q::HexMedAspectFrobenius, M::ConditionNumber },
-  // Verdict adds the Jacobian of the centre to those of the corners.
+  // Verdict adds the Jacobian of the center to the Jacobians of the corners.
   { "scaled Jacobian", hex, Q::HexScaledJacobian, M::ScaledJacobian, Mean, one, Relation::AtMost },
   { "shape", hex, Q::HexShape, M::MeanRatio, Worst, one, Relation::AtMost },
 
@@ -150,7 +150,7 @@ void compare(const Comparison& c)
   }
 }
 
-/// Where Verdict uses the centre besides the corners, they agree if all Jacobians are the same.
+/// Where Verdict uses the center besides the corners, they agree if all Jacobians are the same.
 TAUTLINE_PART(testAffineHexahedra)
 {
   Random random(14);

@@ -62,7 +62,7 @@ struct VerdictFunctions : vtkMeshQuality
   static constexpr std::nullptr_t QuadEquiangleSkew = nullptr;
   static constexpr std::nullptr_t TetMeanRatio = nullptr;
   static constexpr std::nullptr_t TetEquiangleSkew = nullptr;
-  /// There it is the determinant at the centre.
+  /// There it is the determinant at the center.
   static constexpr std::nullptr_t HexVolume = nullptr;
   static constexpr std::nullptr_t WedgeVolume = nullptr;
   static constexpr std::nullptr_t WedgeEdgeRatio = nullptr;

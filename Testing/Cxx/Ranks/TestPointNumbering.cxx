@@ -378,7 +378,7 @@ void testConditions(MPI_Comm comm)
   }
 }
 
-/// What one rank rejects, all reject; what one rank stops, all stop.
+/// An error of one rank is an error of all; an interruption of one rank stops all.
 void testTogether(MPI_Comm comm)
 {
   const int rank = rankOf(comm), ranks = ranksOf(comm);

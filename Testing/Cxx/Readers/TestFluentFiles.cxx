@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Files of Fluent: a cube as text and as bytes; each damaged form is a mesh or an error that names
-// the file. (Polyhedra, zones and what is refused: Testing/Python/test_fluent.py.)
+// the file. (Polyhedra, zones and what is rejected: Testing/Python/test_fluent.py.)
 
 #include "FluentFile.h"
 #include "Readers/MeshFileChecks.h"
@@ -97,7 +97,7 @@ TAUTLINE_PART(testDamaged)
 {
   constexpr int rounds = 4000;
   std::mt19937 random(11);
-  int refused = 0;
+  int rejected = 0;
   for (const std::string& text : { textCube(), binaryCube() })
   {
     for (int round = 0; round < rounds; ++round)
@@ -119,17 +119,17 @@ TAUTLINE_PART(testDamaged)
       }
       catch (const FileError& error)
       {
-        ++refused;
+        ++rejected;
         TAUTLINE_CHECK(contains(error.what(), "cube.cas"));
       }
       catch (const FoamDefect& defect)
       {
-        ++refused;
+        ++rejected;
         TAUTLINE_CHECK(!defect.problem.empty());
       }
     }
   }
-  TAUTLINE_CHECK(refused > rounds);
+  TAUTLINE_CHECK(rejected > rounds);
 }
 }
 

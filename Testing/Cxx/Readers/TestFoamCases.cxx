@@ -69,7 +69,7 @@ void makeDecomposed(bool addressed)
 
 using Grid = vtkSmartPointer<vtkUnstructuredGrid>;
 
-/// What a reader gives, and its error.
+/// The output of a reader, and its error.
 struct Reading
 {
   Grid grid;
@@ -295,7 +295,7 @@ TAUTLINE_PART(testUnusableAddresses)
 
 TAUTLINE_PART(testSeamErrors)
 {
-  const auto refused = [](const char* file, const char* from, const char* to, const char* problem)
+  const auto rejected = [](const char* file, const char* from, const char* to, const char* problem)
   {
     makeDecomposed(false);
     const std::string name = processorFolder(1) + "/" + file;
@@ -305,10 +305,10 @@ TAUTLINE_PART(testSeamErrors)
     writeText(name, text.replace(place, std::string(from).size(), to));
     TAUTLINE_CHECK(contains(read(folder()).error, problem));
   };
-  refused("boundary", "neighbProcNo 0", "neighbProcNo 7", wording("foam-needs-a-processor-patch"));
-  refused("boundary", "myProcNo 1", "myProcNo 0", wording("foam-this-is-processor"));
-  refused("points", "(0 0 1)", "(0 0 1.01)", wording("foam-have-other-points"));
-  refused("faces", "0\n2\n3\n1", "2\n3\n1\n0", wording("foam-have-other-points"));
+  rejected("boundary", "neighbProcNo 0", "neighbProcNo 7", wording("foam-needs-a-processor-patch"));
+  rejected("boundary", "myProcNo 1", "myProcNo 0", wording("foam-this-is-processor"));
+  rejected("points", "(0 0 1)", "(0 0 1.01)", wording("foam-have-other-points"));
+  rejected("faces", "0\n2\n3\n1", "2\n3\n1\n0", wording("foam-have-other-points"));
   makeDecomposed(false);
   std::filesystem::remove_all(folder() + "/processor0");
   TAUTLINE_CHECK(contains(read(folder()).error, wording("foam-later-processors")));

@@ -71,7 +71,7 @@ TAUTLINE_PART(testListForms)
     format.header("faceList") +
       "( 4(0 2 3 1) /* top */ 4 (4 5 7 6)4(0 1 5 4)4(1 3 7 5)4(3 2 6 7)4(2 0 4 6))// end");
   TAUTLINE_CHECK(sameMesh(readFoamMesh(folder()), expected));
-  // older files fill the neighbours of the boundary, and a binary list without entries is a number
+  // older files fill the neighbors of the boundary, and a binary list without entries is a number
   writeText(folder() + "/neighbour", format.header("labelList") + "6(-1 -1 -1 -1 -1 -1)");
   TAUTLINE_CHECK(sameMesh(readFoamMesh(folder()), expected));
   writeText(folder() + "/neighbour",
@@ -79,7 +79,7 @@ TAUTLINE_PART(testListForms)
   TAUTLINE_CHECK(sameMesh(readFoamMesh(folder()), expected));
 }
 
-/// The outward normal of a cell's face, by its fan, times the vector from the cell's centre to it.
+/// The outward normal of a cell's face, by its fan, times the vector from the cell's center to it.
 double outwards(vtkCell* cell, vtkCell* face)
 {
   const auto mean = [](vtkCell* of, double* centre)
@@ -184,7 +184,7 @@ TAUTLINE_PART(testZones)
   TAUTLINE_CHECK(mesh.cellZones.at(0).members == std::vector<Index>{ 1 });
   TAUTLINE_CHECK(mesh.cellZones.at(1).members.empty());
   TAUTLINE_CHECK((mesh.faceZones.at(0).members == std::vector<Index>{ 0, 3 }));
-  // the same in bytes, among which are those of brackets and semicolons
+  // the same in bytes, which include brackets and semicolons
   const FoamForm binary{ true, false, false, false, 8, 8 };
   const FoamFormatter bytes{ binary };
   sample.others["cellZones"] = bytes.header("regIOobject") +
@@ -212,7 +212,7 @@ TAUTLINE_PART(testOrder)
 }
 
 /// Writes the two cubes with a change of one file and checks the error.
-void refused(
+void rejected(
   const std::string& file, const std::string& from, const std::string& to, const char* problem)
 {
   writeFoam(folder(), twoCubes());
@@ -230,42 +230,42 @@ void refused(
 
 TAUTLINE_PART(testErrors)
 {
-  refused("points", "(0 0 0)", "(0 nan 0)", wording("foam-coordinate-is-not-finite"));
-  refused("points", "(0 0 0)", "(0 0)", wording("foam-expected-a-number"));
-  refused("points", "(0 0 0)", "(0 0 0 0)", wording("foam-expected-parenthesis"));
-  refused("points", "12\n(", "13\n(", wording("foam-expected-point"));
-  refused("points", "12\n(", "99999999\n(", wording("foam-list-is-truncated"));
-  refused("points", "12\n(", "12{(0 0 0)}\n(", wording("foam-cannot-all-be-equal"));
-  refused("points", ")\n", "", wording("foam-after-the-last-point"));
-  refused("points", "FoamFile", "Foam", wording("foam-no-header"));
-  refused("points", "ascii", "ascent", wording("foam-format-is"));
-  refused("points", "vectorField", "#include \"x\"", wording("foam-is-a-directive"));
-  refused("faces", "4\n(\n0\n2\n3\n1)", "2\n(\n0\n2)", wording("foam-has-2-points"));
-  refused("faces", "4\n(\n0\n2\n3\n1)", "4\n(\n0\n2\n0\n1)", wording("foam-point-more-than-once"));
-  refused("faces", "4\n(\n0\n2\n3\n1)", "4\n(\n0\n2\n12\n1)", wording("foam-point-is-12"));
-  refused("faces", "4\n(\n0\n2\n3\n1)", "4\n(\n0\n2\n-1\n1)", wording("foam-point-is-1"));
-  refused("faces", "4\n(\n0\n2\n3\n1)", "99999999999999999999(0)", wording("foam-more-digits"));
-  refused("faces", "4\n(\n0\n2\n3\n1)", "4\n(\n0\n2\n7\n1)", wording("foam-cell-is-open"));
-  refused("faces", "4\n(\n0\n2\n3\n1)", "3\n(\n0\n2\n3)", wording("foam-cell-is-open"));
-  refused("owner", "11\n(", "10\n(", wording("foam-expected-closing"));
-  refused("owner", "11\n(", "12\n(", wording("foam-entries-possible"));
-  refused("owner", "\n1)", "\n11)", wording("foam-owner-is-11"));
-  refused("owner", "(\n0", "(\n1", wording("foam-owner-of-an-internal-face"));
-  refused("neighbour", "1)", "0)", wording("foam-owner-of-an-internal-face"));
-  refused("neighbour", "1\n(\n1)", "2\n(\n1\n1)", wording("foam-must-start-at-2"));
-  refused("neighbour", "1\n(\n1)", "2\n(\n-1\n1)", wording("foam-has-no-neighbour"));
-  refused("boundary", "startFace 3", "startFace 4", wording("foam-must-start-at-3"));
-  refused("boundary", "nFaces 8", "nFaces 7", wording("foam-patches-end-at-10"));
-  refused("boundary", "nFaces 8", "nFaces 9", wording("foam-patch-ends-at-12"));
-  refused("boundary", "nFaces 8", "nFaces -8", wording("foam-nfaces-is-8"));
-  refused("boundary", "nFaces 8", "nFaces $n", wording("foam-is-a-macro"));
-  refused("boundary", "nFaces 8;", "", wording("foam-has-no-nfaces"));
-  refused("boundary", "type wall;", "#include \"walls\"", wording("foam-is-a-directive"));
-  refused("boundary", "sides", "low", wording("foam-two-patches"));
-  refused("boundary", "inGroups 1(wall);", "inGroups 1(wall)", wording("foam-has-no-nfaces"));
-  refused("boundary", "startFace 3;", "startFace 3", wording("foam-expected-semicolon"));
-  refused("boundary", "startFace 3;", "a b", wording("foam-ends-inside"));
-  refused("boundary", "// * * * //", "/* * * *", wording("foam-comment-has-no-end"));
+  rejected("points", "(0 0 0)", "(0 nan 0)", wording("foam-coordinate-is-not-finite"));
+  rejected("points", "(0 0 0)", "(0 0)", wording("foam-expected-a-number"));
+  rejected("points", "(0 0 0)", "(0 0 0 0)", wording("foam-expected-parenthesis"));
+  rejected("points", "12\n(", "13\n(", wording("foam-expected-point"));
+  rejected("points", "12\n(", "99999999\n(", wording("foam-list-is-truncated"));
+  rejected("points", "12\n(", "12{(0 0 0)}\n(", wording("foam-cannot-all-be-equal"));
+  rejected("points", ")\n", "", wording("foam-after-the-last-point"));
+  rejected("points", "FoamFile", "Foam", wording("foam-no-header"));
+  rejected("points", "ascii", "ascent", wording("foam-format-is"));
+  rejected("points", "vectorField", "#include \"x\"", wording("foam-is-a-directive"));
+  rejected("faces", "4\n(\n0\n2\n3\n1)", "2\n(\n0\n2)", wording("foam-has-2-points"));
+  rejected("faces", "4\n(\n0\n2\n3\n1)", "4\n(\n0\n2\n0\n1)", wording("foam-point-more-than-once"));
+  rejected("faces", "4\n(\n0\n2\n3\n1)", "4\n(\n0\n2\n12\n1)", wording("foam-point-is-12"));
+  rejected("faces", "4\n(\n0\n2\n3\n1)", "4\n(\n0\n2\n-1\n1)", wording("foam-point-is-1"));
+  rejected("faces", "4\n(\n0\n2\n3\n1)", "99999999999999999999(0)", wording("foam-more-digits"));
+  rejected("faces", "4\n(\n0\n2\n3\n1)", "4\n(\n0\n2\n7\n1)", wording("foam-cell-is-open"));
+  rejected("faces", "4\n(\n0\n2\n3\n1)", "3\n(\n0\n2\n3)", wording("foam-cell-is-open"));
+  rejected("owner", "11\n(", "10\n(", wording("foam-expected-closing"));
+  rejected("owner", "11\n(", "12\n(", wording("foam-entries-possible"));
+  rejected("owner", "\n1)", "\n11)", wording("foam-owner-is-11"));
+  rejected("owner", "(\n0", "(\n1", wording("foam-owner-of-an-internal-face"));
+  rejected("neighbour", "1)", "0)", wording("foam-owner-of-an-internal-face"));
+  rejected("neighbour", "1\n(\n1)", "2\n(\n1\n1)", wording("foam-must-start-at-2"));
+  rejected("neighbour", "1\n(\n1)", "2\n(\n-1\n1)", wording("foam-has-no-neighbour"));
+  rejected("boundary", "startFace 3", "startFace 4", wording("foam-must-start-at-3"));
+  rejected("boundary", "nFaces 8", "nFaces 7", wording("foam-patches-end-at-10"));
+  rejected("boundary", "nFaces 8", "nFaces 9", wording("foam-patch-ends-at-12"));
+  rejected("boundary", "nFaces 8", "nFaces -8", wording("foam-nfaces-is-8"));
+  rejected("boundary", "nFaces 8", "nFaces $n", wording("foam-is-a-macro"));
+  rejected("boundary", "nFaces 8;", "", wording("foam-has-no-nfaces"));
+  rejected("boundary", "type wall;", "#include \"walls\"", wording("foam-is-a-directive"));
+  rejected("boundary", "sides", "low", wording("foam-two-patches"));
+  rejected("boundary", "inGroups 1(wall);", "inGroups 1(wall)", wording("foam-has-no-nfaces"));
+  rejected("boundary", "startFace 3;", "startFace 3", wording("foam-expected-semicolon"));
+  rejected("boundary", "startFace 3;", "a b", wording("foam-ends-inside"));
+  rejected("boundary", "// * * * //", "/* * * *", wording("foam-comment-has-no-end"));
   for (const char* file : { "points", "faces", "owner", "neighbour", "boundary" })
   {
     writeFoam(folder(), twoCubes());
@@ -354,7 +354,7 @@ TAUTLINE_PART(testDuplicateFaces)
 
 TAUTLINE_PART(testHugeCounts)
 {
-  // counts that the file cannot hold are refused before memory is taken for them
+  // counts that the file cannot hold are rejected before memory is taken for them
   const FoamFormatter format{ FoamForm() };
   for (const std::string count : { "1000000000000", "9223372036854775807" })
   {

@@ -20,7 +20,7 @@ namespace
 fs::path corpus; ///< images of 4 x 3 pixels, and a BMP file with a palette of 3 x 2
 fs::path folder; ///< to write to
 
-/// What a reader reports; its executive reports that it failed.
+/// The messages of a reader; its executive reports that it failed.
 /// The error message of reading an image of these bytes.
 std::string complaintOf(const std::string& bytes)
 {
@@ -96,7 +96,7 @@ TAUTLINE_PART(testDamage)
   }
 }
 
-/// A grey TIFF file of 2 x 2 pixels, 1 2 in the first row and 3 4 below, with other values of tags.
+/// A gray TIFF file of 2 x 2 pixels, 1 2 in the first row and 3 4 below, with other values of tags.
 std::string tiff(const std::map<int, int>& changed, int nextDirectory = 0)
 {
   std::map<int, int> tags = { { 256, 2 }, { 257, 2 }, { 258, 8 }, { 259, 1 }, { 262, 1 },

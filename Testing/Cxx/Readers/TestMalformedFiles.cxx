@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Malformed files: the message names file, line and problem. Sets with files of two writes are
-// refused. (Mutations of samples: TestFuzzTargets.)
+// rejected. (Mutations of samples: TestFuzzTargets.)
 
 #include "MeshFileChecks.h"
 #include "Registry.h"

@@ -200,7 +200,7 @@ TAUTLINE_PART(testMessages)
   expect(wrong.text, wording("vertex-is-7-from-1-to-6"));
 }
 
-/// What is not read but has cells is announced; what has none is not.
+/// Sections that are not read are reported if they have cells.
 TAUTLINE_PART(testCellsLeftOut)
 {
   const std::string name = output + "/curved.meshb";

@@ -188,7 +188,7 @@ TAUTLINE_PART(testCompact)
   checkParts(box, 5, 1);
 }
 
-/// What a reader gives when a piece is asked for.
+/// The output of a reader when a piece is requested.
 template <class Reader, class Output>
 void testReader(const std::string& name, vtkIdType cells)
 {

@@ -583,7 +583,7 @@ TAUTLINE_PART(testStraight)
   TAUTLINE_CHECK(mesh.points[6] == 1.0 && mesh.points[7] == 1.0 && mesh.points[8] == 0.0);
 }
 
-/// Each straight shape lists its vertices as VTK does, but for the wedge.
+/// Each straight shape lists its vertices as VTK does, except the wedge.
 TAUTLINE_PART(testStraightVolumes)
 {
   const MeshFile mesh = readLines("MFEM mesh v1.0\ndimension\n3\nelements\n4\n1 4 0 1 2 3\n"

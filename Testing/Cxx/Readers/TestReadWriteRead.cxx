@@ -150,7 +150,7 @@ TAUTLINE_PART(checkViews)
   std::vector<std::string> warnings;
   writeGmshViews(mesh, name, &warnings);
   TAUTLINE_CHECK(warnings ==
-    std::vector<std::string>{ "view \"pair_0\": 1 of 2 elements are left out, as Gmsh cannot read "
+    std::vector<std::string>{ "view \"pair_0\": 1 of 2 elements are left out, because Gmsh cannot read "
                               "values that are not finite (the first is cell 0)" });
   std::ifstream file(name);
   const std::string text{ std::istreambuf_iterator<char>(file), {} };
@@ -187,7 +187,7 @@ TAUTLINE_PART(checkWriterClasses)
   TAUTLINE_SET(gmsh, SetFileName((output + "/image.pos").c_str()), BinaryOff());
   TAUTLINE_CHECK(gmsh->Write() == 1 && fileExists(output + "/image.pos"));
 
-  const auto refusal = [&](vtkMeshFileWriter* writer, const std::string& name)
+  const auto rejection = [&](vtkMeshFileWriter* writer, const std::string& name)
   {
     vtkNew<vtkTest::ErrorObserver> errors;
     TAUTLINE_SET(writer, AddObserver(vtkCommand::ErrorEvent, errors), SetInputData(image),
@@ -196,14 +196,14 @@ TAUTLINE_PART(checkWriterClasses)
     return std::string(writer->GetErrorText());
   };
   vtkNew<vtkTetGenWriter> tetgen;
-  TAUTLINE_CHECK(contains(refusal(tetgen, output + "/image.node"), "3 hexahedra"));
+  TAUTLINE_CHECK(contains(rejection(tetgen, output + "/image.node"), "3 hexahedra"));
   TAUTLINE_CHECK(!fileExists(output + "/image.node"));
   vtkNew<vtkOffWriter> off;
-  TAUTLINE_CHECK(contains(refusal(off, output + "/image.off"), "hexahedra"));
+  TAUTLINE_CHECK(contains(rejection(off, output + "/image.off"), "hexahedra"));
   vtkNew<vtkMeditWriter> medit;
   TAUTLINE_CHECK(
-    contains(refusal(medit, output + "/none/image.mesh"), wording("cannot-be-written")));
-  TAUTLINE_CHECK(contains(refusal(medit, output + "/image.txt"), wording("mesh-is-expected")));
+    contains(rejection(medit, output + "/none/image.mesh"), wording("cannot-be-written")));
+  TAUTLINE_CHECK(contains(rejection(medit, output + "/image.txt"), wording("mesh-is-expected")));
 }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is in the sample files arrives, with the documented array names.
+// The contents of the sample files arrive, with the documented array names.
 
 #include "MeshFileChecks.h"
 #include "Registry.h"
@@ -180,7 +180,7 @@ TAUTLINE_PART(testOldGmsh)
   vtkNew<vtkGmshReader> reader;
   TAUTLINE_CHECK(reader->CanReadFile(file.c_str()) == 1);
 
-  // In 4.0, points of $Entities have a box, too; the tag of an entity comes before its dimension.
+  // In 4.0, points of $Entities also have a box; the tag of an entity comes before its dimension.
   writeText(file,
     "$MeshFormat\n4 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n\n 5 \"solid\"\n20 \"below\"\n"
     "$EndPhysicalNames\n$Entities\n1 0 1 1\n3 0 0 0 0 0 0 0\n2 0 0 0 1 1 0 1 20 0\n"
@@ -328,10 +328,10 @@ TAUTLINE_PART(testOrders)
   }
 }
 
-/// What VTK has no cell for is refused by name, with the remedy; a node left out is a warning.
-TAUTLINE_PART(testRefusedElements)
+/// Elements without a VTK cell are rejected by name, with the remedy; a node left out is a warning.
+TAUTLINE_PART(testRejectedElements)
 {
-  const std::string file = output + "/refused.msh";
+  const std::string file = output + "/rejected.msh";
   const auto text = [](int code, int nodes)
   {
     std::ostringstream lines;
@@ -348,8 +348,8 @@ TAUTLINE_PART(testRefusedElements)
     lines << "\n$EndElements\n";
     return lines.str();
   };
-  const std::pair<int, int> refused[] = { { 20, 9 }, { 39, 12 }, { 137, 16 }, { 99, 32 } };
-  for (const auto& [code, nodes] : refused)
+  const std::pair<int, int> rejected[] = { { 20, 9 }, { 39, 12 }, { 137, 16 }, { 99, 32 } };
+  for (const auto& [code, nodes] : rejected)
   {
     writeText(file, text(code, nodes));
     TAUTLINE_CHECK(contains(complaint(file), wording("gmsh-set-second-order-incomplete")));
@@ -402,7 +402,7 @@ TAUTLINE_PART(testFreeFemAndOff)
   TAUTLINE_CHECK(countCells(house, FilePolygon) == 2 && countCells(house, FileQuadrilateral) == 5);
   TAUTLINE_CHECK(value(house.pointArrays, "Color", 4 * 5 + 3) == 128.0);
   TAUTLINE_CHECK(value(house.cellArrays, "Color", 1) == 20.0);
-  TAUTLINE_CHECK(value(house.cellArrays, "Color", 3) == 170.0); // a face without colour
+  TAUTLINE_CHECK(value(house.cellArrays, "Color", 3) == 170.0); // a face without color
   writeText(output + "/normals.off",
     "\xef\xbb\xbfNOFF\r\n3 1\r\n0 0 0 0 0 1\r\n1 0 0 0 0 1\r\n0 1 0 0 0 1\r\n3 0 1 2 0.5 1.0 "
     "0\r\n");
@@ -418,7 +418,7 @@ TAUTLINE_PART(testFreeFemAndOff)
   TAUTLINE_CHECK(value(normals.pointArrays, "Normals", 8) == 1.0);
   TAUTLINE_CHECK(value(normals.cellArrays, "Color", 0) == 0.5);
 
-  // Colours with and without an opacity, and none: opaque and grey.
+  // Colors with and without an opacity, and none: opaque and gray.
   writeText(output + "/colors.off",
     "OFF\n3 3 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 10 20 30 40\n3 0 1 2 1 2 3\n3 0 1 2\n");
   const MeshFile colors = readOff(output + "/colors.off", false);

@@ -88,7 +88,7 @@ ReconnectionResult adapt(const MeshData& data, const MetricAt& metric,
   return reconnect(data, options);
 }
 
-/// What a mesh is like in a metric.
+/// The properties of a mesh in a metric.
 struct InMetric
 {
   double share = 0; ///< of edges in range
@@ -127,8 +127,8 @@ InMetric measureIn(const MeshData& data, const MetricAt& metric)
   return result;
 }
 
-/// The shape in a metric is that of the tetrahedron in coordinates in which the metric is the
-/// identity, and does not depend on a factor of the metric.
+/// The shape in a metric equals the shape of the tetrahedron in coordinates in which the metric is
+/// the identity, and does not depend on a factor of the metric.
 TAUTLINE_PART(testShape)
 {
   Random random(4);
@@ -212,7 +212,7 @@ TAUTLINE_PART(testFixed)
   TAUTLINE_CHECK_RELATIVE(volumeOf(output), 1.0, 1e-13);
 }
 
-/// On a ball the boundary stays near that of the input.
+/// On a ball the boundary stays near the input's.
 TAUTLINE_PART(testOnSurface)
 {
   const MeshData data = roundMesh(3);
@@ -403,7 +403,7 @@ TAUTLINE_PART(testPinchedEdge)
   }
 }
 
-/// A flat tetrahedron on the boundary is taken, and gone afterwards.
+/// A flat tetrahedron on the boundary is accepted, and removed.
 TAUTLINE_PART(testFlat)
 {
   MeshData data = unitCube(3);
@@ -473,7 +473,7 @@ TAUTLINE_PART(testPart)
   TAUTLINE_CHECK_EQUAL(found, kept.size());
 }
 
-/// Points of the output know where they are in the input.
+/// Points of the output store their positions in the input.
 TAUTLINE_PART(testInterpolation)
 {
   const MeshData data = unitCube(4);
@@ -582,7 +582,7 @@ private:
   std::array<Vec3, 6> Slope;
 };
 
-/// What random operations keep: volumes of regions, areas of classes, the mesh itself.
+/// Invariants of random operations: volumes of regions, areas of classes, the mesh itself.
 void checkInvariants(const TetrahedronMesh& mesh, const std::vector<std::int32_t>& classes)
 {
   TAUTLINE_CHECK_EQUAL(mesh.findViolation(), "");

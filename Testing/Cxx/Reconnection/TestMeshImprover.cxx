@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Improve Mesh: the kernel's result as a data set, data of points and cells, tables, refusals.
+// Improve Mesh: the kernel's result as a data set, data of points and cells, tables, rejections.
 #include "Reconnecting.h"
 #include "Registry.h"
 #include "VtkMeshes.h"
@@ -92,7 +92,7 @@ TAUTLINE_PART(testKernel)
     TAUTLINE_CHECK_NEAR(range[0], last.smallestAngle, 1e-8);
     meshOf(filter)->GetCellData()->GetArray("imr")->GetRange(range);
     TAUTLINE_CHECK_RELATIVE(range[1], last.worstInverseMeanRatio, 1e-9);
-    // What remains, the worst first.
+    // The remaining elements, the worst first.
     TAUTLINE_CHECK_EQUAL(filter->GetRemaining(), last.belowTarget);
     vtkTable* remaining = filter->GetRemainingTable();
     TAUTLINE_CHECK_EQUAL(remaining->GetNumberOfRows(), last.belowTarget);
@@ -218,12 +218,12 @@ TAUTLINE_PART(testFixed)
   TAUTLINE_CHECK(dataOf(meshOf(filter)).points == data.points);
 }
 
-/// What is refused, by text; an error leaves all outputs empty.
-TAUTLINE_PART(testRefusals)
+/// Rejected inputs, by text; an error leaves all outputs empty.
+TAUTLINE_PART(testRejections)
 {
   vtkNew<vtkMeshImprover> filter;
   Messages messages(filter);
-  const auto refused = [&](vtkDataObject* input, const char* text)
+  const auto rejected = [&](vtkDataObject* input, const char* text)
   {
     const Context context(text);
     messages.clear();
@@ -232,40 +232,40 @@ TAUTLINE_PART(testRefusals)
     TAUTLINE_CHECK_EQUAL(filter->GetHistory()->GetNumberOfRows(), 0);
     TAUTLINE_CHECK(std::string(filter->GetSummary()).empty());
   };
-  refused(
+  rejected(
     toGrid(blockMesh(CellType::Hexahedron, 2, 2, 2)), wording("8-hexahedra-improve-mesh-takes"));
-  refused(toGrid(blockMesh(CellType::Hexahedron, 2, 2, 2)), wording("run-tetrahedralize-first-2"));
+  rejected(toGrid(blockMesh(CellType::Hexahedron, 2, 2, 2)), wording("run-tetrahedralize-first-2"));
   MeshData mixed = blockMesh(CellType::Triangle, 2, 2, 0);
   mixed.addCell(CellType::Quadrilateral, { 0, 1, 4, 3 });
   const char* triangulate =
     "1 quadrilaterals: Improve Mesh takes linear triangles only; run Triangulate first";
-  refused(toGrid(mixed), triangulate);
-  refused(toPolyData(mixed), triangulate);
+  rejected(toGrid(mixed), triangulate);
+  rejected(toPolyData(mixed), triangulate);
   TAUTLINE_NEW(vtkImageData, image, SetDimensions(3, 3, 3));
-  refused(image, wording("run-tetrahedralize-first-2"));
+  rejected(image, wording("run-tetrahedralize-first-2"));
 
   MeshData inverted = blockMesh(CellType::Tetrahedron, 2, 2, 2);
   inverted.setPoint(13, { 3, 3, 3 });
-  refused(toGrid(inverted), wording("run-untangle-mesh-first"));
+  rejected(toGrid(inverted), wording("run-untangle-mesh-first"));
   MeshData broken = blockMesh(CellType::Tetrahedron, 2, 2, 2);
   broken.points[0] = std::numeric_limits<double>::quiet_NaN();
-  refused(toGrid(broken), wording("nan-or-infinite"));
+  rejected(toGrid(broken), wording("nan-or-infinite"));
 
   const auto ghosts = toGrid(blockMesh(CellType::Tetrahedron, 2, 2, 2));
   TAUTLINE_NEW(vtkUnsignedCharArray, flags, SetName(vtkDataSetAttributes::GhostArrayName()),
     SetNumberOfValues(ghosts->GetNumberOfCells()), Fill(0),
     SetValue(3, vtkDataSetAttributes::DUPLICATECELL));
   ghosts->GetCellData()->AddArray(flags);
-  refused(ghosts, wording("1-ghost-or-hidden-cells"));
+  rejected(ghosts, wording("1-ghost-or-hidden-cells"));
 
   const auto regions = withArrays(blockMesh(CellType::Tetrahedron, 2, 2, 2));
   filter->SetInputArrayToProcess(1, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "absent");
-  refused(regions, "absent");
+  rejected(regions, "absent");
   TAUTLINE_NEW(vtkDoubleArray, holes, SetName("holes"),
     SetNumberOfValues(regions->GetNumberOfCells()), Fill(std::numeric_limits<double>::quiet_NaN()));
   regions->GetCellData()->AddArray(holes);
   filter->SetInputArrayToProcess(1, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "holes");
-  refused(regions, wording("is-nan-in-cell-0"));
+  rejected(regions, wording("is-nan-in-cell-0"));
   filter->SetInputArrayToProcess(1, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "None");
 
   messages.clear();
@@ -273,7 +273,7 @@ TAUTLINE_PART(testRefusals)
   TAUTLINE_CHECK(messages.has(wording("targetangle-is-61")));
 }
 
-/// Triangles beside the tetrahedra are left out with a warning; ids are those of the input.
+/// Triangles beside the tetrahedra are left out with a warning; ids refer to the input.
 TAUTLINE_PART(testSurfaceCells)
 {
   const MeshData data = sliverBlock(3);
@@ -351,7 +351,7 @@ TAUTLINE_PART(testMarkedFacet)
   TAUTLINE_CHECK(lost > 5);
 }
 
-/// Each tetrahedron with points of its own: one mesh if merged, else all facets are boundary.
+/// Each tetrahedron with points of its own: one mesh if merged, otherwise all facets are boundary.
 TAUTLINE_PART(testSeams)
 {
   const MeshData data = sliverBlock(3);

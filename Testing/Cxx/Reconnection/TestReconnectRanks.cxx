@@ -28,7 +28,7 @@ struct Given
   std::vector<std::array<Index, 3>> marked;
 };
 
-/// Runs on ranks, checks what they agree on, and that inserted points are where their shares say.
+/// Runs on ranks, checks what they agree on, and that inserted points match their shares.
 Joined reconnectOnRanks(
   const Given& given, int ranks, Cut cut, const ReconnectionOptions& options, int rounds = 12)
 {
@@ -343,7 +343,7 @@ struct HeldMesh
 };
 
 /**
- * @brief Where fixed points and a wall leave few ways, ranks find one, too: insertions at
+ * @brief Where fixed points and a wall leave few ways, ranks also find one: insertions at
  * seams do not use up the number of tetrahedra.
  *
  * The target is 33.4 degrees, and with GCC 12 all twelve cases reach it, with parts of 190 to 380
@@ -428,28 +428,28 @@ void testStops()
   TAUTLINE_CHECK_EQUAL(
     static_cast<int>(aborted.first.reason), static_cast<int>(StopReason::Aborted));
 
-  const auto refused = [&](const MeshData& mesh, const auto& set, const char* text)
+  const auto rejected = [&](const MeshData& mesh, const auto& set, const char* text)
   {
     ReconnectionOptions wrong;
     set(wrong);
     TAUTLINE_CHECK_THROWS(reconnectOnRanks({ mesh, {}, {}, {} }, 3, Cut::Slabs, wrong), text);
   };
   const auto nothing = [](ReconnectionOptions&) {};
-  refused(
+  rejected(
     data, [](auto& o) { o.boundary = BoundaryMotion::OnSurface; }, "on one rank");
-  refused(
+  rejected(
     data, [](auto& o) { o.objective = ReconnectionObjective::Metric; }, "on one rank");
-  refused(
+  rejected(
     data, [](auto& o) { o.overlaps = true; }, "conservative");
-  refused(
+  rejected(
     data, [](auto& o) { o.targetAngle = 90; }, "target angle");
   MeshData inverted = data; // in one place, on one rank
   std::swap(inverted.connectivity[0], inverted.connectivity[1]);
-  refused(inverted, nothing, "inverted");
+  rejected(inverted, nothing, "inverted");
   MeshData twice = data;
   const auto last = twice.connectivity.end() - 4;
   twice.addCell(CellType::Tetrahedron, std::vector<Index>(last, last + 4));
-  refused(twice, nothing, wording("three-or-more"));
+  rejected(twice, nothing, wording("three-or-more"));
 }
 }
 

@@ -302,7 +302,7 @@ TAUTLINE_PART(testDividedBoundary)
 TAUTLINE_PART(testFlat)
 {
   MeshData data = sliverBlock(5, 2, 1.2);
-  // Points of the faces move in these, too.
+  // Points of the faces also move in them.
   Random random(17);
   for (Index i = 0; i < data.numberOfPoints(); ++i)
   {
@@ -370,7 +370,7 @@ TAUTLINE_PART(testLimits)
   }
 }
 
-/// What remains below the target has a reason; points that are fixed stay and are used.
+/// Elements that remain below the target have a reason; points that are fixed stay and are used.
 TAUTLINE_PART(testObstacles)
 {
   const MeshData data = sliverBlock(5, 6, 1.2);
@@ -551,7 +551,7 @@ TAUTLINE_PART(testSizes)
   TAUTLINE_CHECK_THROWS(reconnect(data, all), wording("must-be-above-1"));
 }
 
-/// With the worst held, the mean becomes about that of Best shape alone on the same cells.
+/// With the worst held, the mean becomes about as good as with Best shape alone on the same cells.
 TAUTLINE_PART(testMean)
 {
   const MeshData data = sliverBlock(6, 9, 0.9);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What improveConnectivity() improves (objectives), what the boundary allows, and memory.
+// The objectives of improveConnectivity(), the limits by the boundary, and memory.
 
 #include "Reconnecting.h"
 #include "Registry.h"
@@ -108,7 +108,8 @@ TAUTLINE_PART(testObjectives)
   TAUTLINE_CHECK(meanRatio(shape) >= meanRatio(both) * (1.0 - 1e-3));
 }
 
-/// What remains below the target is within its bound, and the reason Facets says that it is at it.
+/// Elements that remain below the target are within their bounds, and the reason Facets means that
+/// it is at the bound.
 TAUTLINE_PART(testBounds)
 {
   const MeshData data = bipyramid();
@@ -127,7 +128,7 @@ TAUTLINE_PART(testBounds)
     TAUTLINE_CHECK_EQUAL(obstacle == ReconnectionObstacle::Facets, bound <= quality * 1.002);
   }
   TAUTLINE_CHECK_EQUAL(worst, result.history.back().worstQuality);
-  // The bound of the mesh is that of the worst facet.
+  // The bound of the mesh comes from the worst facet.
   StarSmoothing smoothing;
   double least = 1.0;
   for (Index i = 0; i < 3; ++i)
@@ -215,7 +216,7 @@ TAUTLINE_PART(testRecords)
     TAUTLINE_CHECK_RELATIVE(result.meanAfter,
       std::accumulate(shape.begin(), shape.end(), 0.0) / static_cast<double>(shape.size()), 1e-9);
   }
-  TAUTLINE_CHECK(*chunks.rbegin() > 0); // else a later chunk need not be looked at
+  TAUTLINE_CHECK(*chunks.rbegin() > 0); // otherwise a later chunk is not needed
 }
 
 /// Nothing is inserted or contracted at postponed points.

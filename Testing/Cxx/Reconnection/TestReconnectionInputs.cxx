@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// improveConnectivity() with input it refuses, and with input at the limits of what it takes.
+// improveConnectivity() with input it rejects, and with input at the limits of what it takes.
 
 #include "Reconnecting.h"
 #include "Registry.h"
@@ -8,7 +8,7 @@ using namespace tautline;
 
 namespace
 {
-TAUTLINE_PART(testRefusals)
+TAUTLINE_PART(testRejections)
 {
   const ReconnectionOptions defaults;
   MeshData mixed = blockMesh(CellType::Tetrahedron, 2, 2, 2);
@@ -53,7 +53,7 @@ TAUTLINE_PART(testRefusals)
 TAUTLINE_PART(testOptions)
 {
   const MeshData data = blockMesh(CellType::Tetrahedron, 2, 2, 2);
-  const auto refused = [&](const auto& change, const char* text)
+  const auto rejected = [&](const auto& change, const char* text)
   {
     ReconnectionOptions options;
     change(options);
@@ -62,21 +62,21 @@ TAUTLINE_PART(testOptions)
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (double angle : { 0.0, -1.0, 61.0, nan })
   {
-    refused([&](ReconnectionOptions& o) { o.targetAngle = angle; }, "target angle");
+    rejected([&](ReconnectionOptions& o) { o.targetAngle = angle; }, "target angle");
   }
   for (double count : { -0.1, 1.1, nan })
   {
-    refused([&](ReconnectionOptions& o) { o.smallestCount = count; }, "smallest count");
+    rejected([&](ReconnectionOptions& o) { o.smallestCount = count; }, "smallest count");
   }
   for (double count : { 0.9, nan, std::numeric_limits<double>::infinity() })
   {
-    refused([&](ReconnectionOptions& o) { o.largestCount = count; }, "largest count");
+    rejected([&](ReconnectionOptions& o) { o.largestCount = count; }, "largest count");
   }
   for (double angle : { -0.1, 1.1, nan })
   {
-    refused([&](ReconnectionOptions& o) { o.flatAngle = angle; }, "flat angle");
+    rejected([&](ReconnectionOptions& o) { o.flatAngle = angle; }, "flat angle");
   }
-  refused([](ReconnectionOptions& o) { o.maximumSeconds = -1; }, "time limit");
+  rejected([](ReconnectionOptions& o) { o.maximumSeconds = -1; }, "time limit");
 }
 
 TAUTLINE_PART(testSmall)
@@ -320,7 +320,7 @@ TAUTLINE_PART(testDuplicatePoints)
   TAUTLINE_CHECK(outerFacets(outputOf(result)) == outerFacets(data));
 }
 
-/// All cells listed in the opposite order: the result is, too.
+/// All cells listed in the opposite order: so is the result.
 TAUTLINE_PART(testMirrored)
 {
   const MeshData data = sliverBlock(4, 5, 1.0);

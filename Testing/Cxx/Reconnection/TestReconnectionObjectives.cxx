@@ -43,7 +43,7 @@ TAUTLINE_PART(testEveryMetric)
         reconnect(data, metricOptions(info.metric)), wording("choose-another-metric"));
       continue;
     }
-    // Of these every valid tetrahedron has the value 0.
+    // Every valid tetrahedron has the value 0 of these.
     if (worstOf(data, info) == 0.0 && info.direction == Direction::SmallerIsBetter)
     {
       continue;
@@ -60,7 +60,7 @@ TAUTLINE_PART(testEveryMetric)
   TAUTLINE_CHECK(improved >= 20);
 }
 
-/// For the radius ratio better than by angles and shape, in units of any size, in blocks, too.
+/// For the radius ratio better than by angles and shape, in units of any size, also in blocks.
 TAUTLINE_PART(testMetric)
 {
   const MeshData data = sliverBlock(5, 3, 0.9);

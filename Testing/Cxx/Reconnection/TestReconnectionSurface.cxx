@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// improveConnectivity() with a boundary that stays within a distance of that of the input.
+// improveConnectivity() with a boundary that stays within a distance of the input's.
 
 #include "Reconnecting.h"
 #include "Registry.h"
@@ -32,7 +32,7 @@ double distanceTo(const std::set<Facet>& facets, const Vec3& x)
   return smallestOf<double>(1e300, facets, [&](const Facet& f) { return distanceTo(f, x); });
 }
 
-/// At the corners, the middles of edges and the centres.
+/// At the corners, the middles of edges and the centers.
 double distanceTo(const std::set<Facet>& from, const std::set<Facet>& to)
 {
   double largest = 0.0;
@@ -85,7 +85,7 @@ void checkBoundary(const MeshData& input, const ReconnectionResult& result, doub
   const std::set<Facet> before = outerFacets(input), after = outerFacets(output);
   TAUTLINE_CHECK_EQUAL(eulerOf(after), eulerOf(before));
   const double there = distanceTo(after, before), back = distanceTo(before, after);
-  // Both ways, at corners, middles of edges and centres of facets.
+  // Both ways, at corners, middles of edges and centers of facets.
   TAUTLINE_CHECK(there <= tolerance * (1.0 + 1e-9));
   TAUTLINE_CHECK(back <= 1.25 * tolerance * (1.0 + 1e-9));
   TAUTLINE_CHECK_NEAR(result.boundaryDistance, std::max(there, back), 1e-12);
@@ -214,7 +214,7 @@ TAUTLINE_PART(testKept)
   }
 }
 
-/// In blocks on any number of threads the same; with the best shape at the end, too.
+/// In blocks on any number of threads the same; also with the best shape at the end.
 TAUTLINE_PART(testThreads)
 {
   const Context context("threads");
@@ -229,7 +229,7 @@ TAUTLINE_PART(testThreads)
   checkBoundary(ball, one, options.surfaceTolerance * diagonalOf(ball));
 }
 
-/// The ball with needles for facets: points of the boundary at the side of one of their neighbours.
+/// The ball with needles for facets: points of the boundary at the side of one of their neighbors.
 MeshData needleBall()
 {
   constexpr Index step = 11; // apart from each other

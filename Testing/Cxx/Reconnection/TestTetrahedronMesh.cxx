@@ -87,7 +87,7 @@ std::set<TriangleVertices> wallsOf(const TetrahedronMesh& mesh)
 
 //------------------------------------------------------------------------------
 /// On a lattice with integer coordinates the determinant is exact in integers; scaled by a number
-/// that is not a power of two, the points are no longer in one plane, and the sign is that of the
+/// that is not a power of two, the points are no longer in one plane, and the sign follows from the
 /// rounded coordinates.
 TAUTLINE_PART(testOrientation)
 {
@@ -154,8 +154,8 @@ TAUTLINE_PART(testQuality)
   }
 }
 
-/// The best point in a regular octahedron is its centre, from any start; the value of a point that
-/// moves in a plane or on a line is at least that of each of many points there.
+/// The best point in a regular octahedron is its center, from any start; the value of a point that
+/// moves in a plane or on a line is at least as good as each of many points there.
 TAUTLINE_PART(testSmoothing)
 {
   const Vec3 v[6] = { { 1, 0, 0 }, { -1, 0, 0 }, { 0, 1, 0 }, { 0, -1, 0 }, { 0, 0, 1 },
@@ -401,7 +401,7 @@ void testRandomOperations(int wanted)
       if (!operate(operations, mesh, t, random))
       {
         const std::vector<double> after = stateOf(mesh);
-        // Slots that were added and freed again may remain; what is in use is as it was.
+        // Slots that were added and freed again may remain; used slots are unchanged.
         undone += after.size() != state.size();
         TAUTLINE_CHECK_EQUAL(after[0], state[0]);
         TAUTLINE_CHECK_EQUAL(operations.counts().insertions, counts.insertions);

@@ -51,7 +51,7 @@ TriangleOptions adaptOptions(const std::vector<double>& metrics)
   return options;
 }
 
-/// Adapts, evaluates the metric anew, and adapts again.
+/// Adapts, evaluates the metric again, and adapts once more.
 MeshData adaptedTo(MeshData data, const MetricField& field, int rounds)
 {
   for (int round = 0; round < rounds; ++round)

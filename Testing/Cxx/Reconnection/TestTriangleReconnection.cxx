@@ -33,8 +33,8 @@ std::set<std::array<Index, 3>> cellsOf(const MeshData& data)
   return cells;
 }
 
-/// Flips lead from any triangulation to that of Delaunay: no point in any circumcircle. Its
-/// smallest angle is the largest of all triangulations of the points.
+/// Flips lead from any triangulation to the Delaunay triangulation: no point in any circumcircle.
+/// Its smallest angle is the largest of all triangulations of the points.
 TAUTLINE_PART(testDelaunay)
 {
   for (unsigned seed = 1; seed <= 8; ++seed)
@@ -318,7 +318,7 @@ TAUTLINE_PART(testMean)
       return std::accumulate(imr.begin(), imr.end(), 0.0) / static_cast<double>(imr.size());
     };
     TAUTLINE_CHECK(mean(output) < 1.0 + 0.9 * (mean(trianglesOf(plain)) - 1.0));
-    // One point within a hexagon goes to its centre, the regular triangles.
+    // One point within a hexagon goes to its center, the regular triangles.
     MeshData hexagon;
     for (int i = 0; i < 6; ++i)
     {
@@ -353,7 +353,8 @@ TAUTLINE_PART(testCount)
   }
 }
 
-/// Marked edges and fixed points stay; what they hold below the target is said to be so.
+/// Marked edges and fixed points stay; elements that they keep below the target are reported as
+/// such.
 TAUTLINE_PART(testKept)
 {
   const MeshData data = sliverSheet(12, 13);

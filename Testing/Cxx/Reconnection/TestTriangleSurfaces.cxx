@@ -368,7 +368,7 @@ TAUTLINE_PART(testSmall)
   const ReconnectionResult single = reconnect(one, triangleOptions(Preset::Aggressive));
   checkTriangles(one, single);
   TAUTLINE_CHECK(single.triangles == one.connectivity && single.points == one.points);
-  // Of a tetrahedron's surface no edge can be flipped or contracted.
+  // No edge of a tetrahedron's surface can be flipped or contracted.
   MeshData tetrahedron;
   tetrahedron.addPoints({ { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 0.1 } });
   for (const std::vector<Index>& v :
@@ -386,7 +386,7 @@ TAUTLINE_PART(testSmall)
   TAUTLINE_CHECK(none.triangles.empty() && none.history.empty());
 }
 
-TAUTLINE_PART(testRefusals)
+TAUTLINE_PART(testRejections)
 {
   const TriangleOptions defaults = triangleOptions(Preset::Aggressive);
   MeshData quads = blockMesh(CellType::Quadrilateral, 2, 2, 0);
@@ -408,13 +408,13 @@ TAUTLINE_PART(testRefusals)
   MeshData folded = cubeSurface(CellType::Triangle, 2);
   folded.setPoint(folded.connectivity[0], folded.point(folded.connectivity[1]));
   TAUTLINE_CHECK_THROWS(reconnect(folded, defaults), wording("degenerate-triangles-that-cannot"));
-#define REFUSED(change, text) \
+#define REJECTED(change, text) \
   TAUTLINE_CHECK_THROWS(reconnect(data, TAUTLINE_CHANGED(TriangleOptions(), change)), text)
   const MeshData data = blockMesh(CellType::Triangle, 2, 2, 0);
-  REFUSED(featureAngle = -1, "feature angle");
-  REFUSED(surfaceAngle = 91, "surface angle");
-  REFUSED(surfaceTolerance = std::nan(""), "surface tolerance");
-  REFUSED(targetAngle = 61, "target angle");
+  REJECTED(featureAngle = -1, "feature angle");
+  REJECTED(surfaceAngle = 91, "surface angle");
+  REJECTED(surfaceTolerance = std::nan(""), "surface tolerance");
+  REJECTED(targetAngle = 61, "target angle");
   // Points that coincide where cells only touch are borders.
   MeshData apart = blockMesh(CellType::Triangle, 3, 3, 0);
   const MeshData other = blockMesh(CellType::Triangle, 3, 3, 0);

@@ -24,7 +24,7 @@ struct Picture
   }
 };
 
-/// 255 where a function of the pixel's centre is positive, else 0.
+/// 255 where a function of the pixel's center is positive, otherwise 0.
 inline Picture paint(Index width, Index height, const std::function<double(double, double)>& inside)
 {
   Picture picture{ width, height, std::vector<float>(static_cast<std::size_t>(width * height)) };

@@ -40,7 +40,7 @@ Silhouette figure(double extent, double angle, bool mirrored, int kind)
     }).view());
 }
 
-/// Energies of copies of one shape with another, relative to those of the first copy.
+/// Energies of copies of one shape with another, relative to the first copy's.
 TAUTLINE_PART_SLOW(testInvariance)
 {
   const OutlineOptions options;
@@ -105,7 +105,7 @@ TAUTLINE_PART(testExact)
     // Far below the energy with the least similar one.
     TAUTLINE_CHECK(4 * row[s] < *std::max_element(row.begin(), row.end()));
   }
-  // The first two are one shape; the mirror image is recognised.
+  // The first two are one shape; the mirror image is recognized.
   const OutlineMatch twins = matchOutlines(models[0], models[1], options);
   TAUTLINE_CHECK(twins.mirrored);
   TAUTLINE_CHECK(twins.energy < 0.5 * matchOutlines(models[0], models[3], options).energy);
@@ -118,7 +118,7 @@ TAUTLINE_PART(testTerms)
   TAUTLINE_LET(OutlineOptions, options, deformation = options.distortion = options.descriptor = 0.0,
     mirrored = false);
   const OutlineModel model = prepareOutline(traceSilhouette(blob(120, 60, 60, 30).view()), options);
-  // Only the ordering is left: advances are rounded, each to one of its neighbours.
+  // Only the ordering is left: advances are rounded, each to one of its neighbors.
   const OutlineMatch match = matchOutlines(model, model, options);
   double least = 0.0;
   for (double advance : model.polygon.advance)

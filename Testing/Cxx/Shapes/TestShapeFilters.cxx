@@ -34,7 +34,7 @@ vtkSmartPointer<vtkImageData> makeImage(
   {
     for (int c = 0; c < components; ++c)
     {
-      // With an alpha channel the colours are constant: only the alpha shows the shape.
+      // With an alpha channel the colors are constant: only the alpha shows the shape.
       const bool alpha = c == components - 1 && components % 2 == 0;
       values->SetComponent(
         i, c, components % 2 == 0 && !alpha ? 77.0 : picture.values[static_cast<std::size_t>(i)]);
@@ -72,7 +72,7 @@ TAUTLINE_PART(testMesher)
   auto* outline = vtkPolyData::SafeDownCast(mesher->GetOutputDataObject(1));
   TAUTLINE_CHECK_EQUAL(outline->GetNumberOfPoints(), static_cast<vtkIdType>(shape.outline.size()));
   TAUTLINE_CHECK(contains(mesher->GetSummary(), "triangles"));
-  // Grey, grey with alpha, colour, colour with alpha: the same mesh.
+  // Gray, gray with alpha, color, color with alpha: the same mesh.
   for (int components : { 2, 3, 4 })
   {
     TAUTLINE_NEW(vtkSilhouetteMesher, other, SetInputData(makeImage(picture, components, 0.5)),
@@ -330,18 +330,18 @@ void testRetrieval(const std::string& output)
   retrieval->Update();
   TAUTLINE_CHECK_NEAR(retrieval->GetRecognitionRate(), 100.0, 1e-12);
 
-  const auto refused = [&](const std::string& text, const char* part)
+  const auto rejected = [&](const std::string& text, const char* part)
   {
     std::ofstream(folder / "bad.csv") << text;
     TAUTLINE_NEW(vtkSilhouetteSetReader, bad, SetFileName((folder / "bad.csv").string().c_str()));
     TAUTLINE_CHECK(contains(errorOf(bad), part));
   };
-  refused("", "empty");
-  refused("name,class\na,b\n", wording("bad-csv-1-no-column-file"));
-  refused("file,class\nnone.png,b\n", wording("bad-csv-2-there-is-no-file"));
-  refused("file,class\nblob0.png\n", wording("bad-csv-2-1-fields"));
+  rejected("", "empty");
+  rejected("name,class\na,b\n", wording("bad-csv-1-no-column-file"));
+  rejected("file,class\nnone.png,b\n", wording("bad-csv-2-there-is-no-file"));
+  rejected("file,class\nblob0.png\n", wording("bad-csv-2-1-fields"));
   std::ofstream(folder / "images" / "text.png") << "no picture";
-  refused("file,class\ntext.png,b\n", "text.png");
+  rejected("file,class\ntext.png,b\n", "text.png");
   TAUTLINE_NEW(vtkSilhouetteSetReader, missing, SetFileName("nowhere.csv"));
   TAUTLINE_CHECK(contains(errorOf(missing), wording("no-such-file")));
 }

@@ -161,7 +161,7 @@ TAUTLINE_PART(testPlainLoop)
     TAUTLINE_CHECK_RELATIVE(fast.energy, slow.energy, 1e-6);
     TAUTLINE_CHECK_EQUAL(fast.rank, slow.rank);
     TAUTLINE_CHECK(fast.exact);
-    // What is reported is what the placement costs, and the sum of the triangles.
+    // The reported energy equals the cost of the placement, and the sum over the triangles.
     const ShapeMatch again = evaluatePlacement(source, target, options.energy, fast.points);
     TAUTLINE_CHECK_RELATIVE(again.energy, fast.energy, 1e-12);
     double edge = 0.0;
@@ -251,7 +251,7 @@ TAUTLINE_PART(testInvariance)
   TAUTLINE_CHECK_NEAR(found.angle, 90.0, 1e-9);
 }
 
-/// The centre-of-mass rule passes solutions over, in the order of their energy.
+/// The center-of-mass rule passes solutions over, in the order of their energy.
 TAUTLINE_PART(testCentreRule)
 {
   MatchOptions options;
@@ -317,7 +317,7 @@ TAUTLINE_PART(testThreadsAndStops)
   }
 }
 
-TAUTLINE_PART(testRefused)
+TAUTLINE_PART(testRejected)
 {
   const Silhouette shape = traceSilhouette(disc(60, 30, 30, 20).view());
   TAUTLINE_LET(LocationOptions, one, columns = one.rows = 1);
@@ -327,20 +327,20 @@ TAUTLINE_PART(testRefused)
   const ShapeSource source = makeShapeSource(shape, 20.0);
   const double nan = std::nan(""), inf = std::numeric_limits<double>::infinity();
   const ShapeTarget target(shape, {}, {});
-#define REFUSED(change, text) \
+#define REJECTED(change, text) \
   TAUTLINE_CHECK_THROWS(matchShape(source, target, TAUTLINE_CHANGED(MatchOptions(), change)), text)
-#define REFUSED_ENERGY(change, text) \
+#define REJECTED_ENERGY(change, text) \
   TAUTLINE_CHECK_THROWS(ShapeTarget(shape, {}, TAUTLINE_CHANGED(ShapeEnergy(), change)), text)
   for (double bad : { nan, inf, -1.0 })
   {
-    REFUSED(energy.deformation = bad, wording("deformation-weight-a"));
-    REFUSED(energy.distortion = bad, wording("distortion-weight-b"));
-    REFUSED(centreTolerance = bad, wording("centre-tolerance"));
-    REFUSED_ENERGY(lambda = bad, "lambda");
-    REFUSED_ENERGY(smoothing = bad, "smoothing");
+    REJECTED(energy.deformation = bad, wording("deformation-weight-a"));
+    REJECTED(energy.distortion = bad, wording("distortion-weight-b"));
+    REJECTED(centreTolerance = bad, wording("centre-tolerance"));
+    REJECTED_ENERGY(lambda = bad, "lambda");
+    REJECTED_ENERGY(smoothing = bad, "smoothing");
   }
-  REFUSED(energy.lambda = 0.2, wording("prepared-for-another"));
-  REFUSED(scales = 2, wording("odd-number"));
+  REJECTED(energy.lambda = 0.2, wording("prepared-for-another"));
+  REJECTED(scales = 2, wording("odd-number"));
   TAUTLINE_CHECK_THROWS(matchShape(ShapeSource(), target, {}), wording("no-triangles"));
   TAUTLINE_LET(LocationOptions, huge, columns = huge.rows = 300);
   TAUTLINE_CHECK_THROWS(ShapeTarget(shape, huge), "4 GiB");

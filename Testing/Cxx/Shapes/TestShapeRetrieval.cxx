@@ -26,7 +26,7 @@ TAUTLINE_PART(testCounting)
   TAUTLINE_CHECK_NEAR(found.confusion[0], 0.5, 1e-15);
   TAUTLINE_CHECK_NEAR(found.confusion[1], 0.5, 1e-15);
   TAUTLINE_CHECK_NEAR(found.confusion[3], 1.0, 1e-15);
-  // Of two of a class only one other can be found: more matches than that are not possible.
+  // A class of two has only one other to find: more matches than that are not possible.
   TAUTLINE_CHECK_EQUAL(recognize(ranking, { 7, 7, 9, 9 }, 10).possible, 4);
   // Not computed is last.
   TAUTLINE_CHECK(
@@ -190,7 +190,7 @@ TAUTLINE_PART(testArticulation)
   }
   TAUTLINE_CHECK_EQUAL(computed, some.matches);
 
-  // Diffusion ranks no worse; wrong labels give a low rate with it, too.
+  // Diffusion ranks no worse; wrong labels also give a low rate with it.
   TAUTLINE_SET(options, shortlist = 0, neighbours = 5);
   const Retrieval passed = retrieveShapes(shapes, labels, options);
   std::cout << "after diffusion: " << 100.0 * passed.recognition.rate << " %\n";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From images to outlines and polygons: known areas, sub-pixel places, what is ignored or refused.
+// From images to outlines and polygons: known areas, sub-pixel places, what is ignored or rejected.
 
 #include "Registry.h"
 #include "Shapes.h"
@@ -36,7 +36,7 @@ TAUTLINE_PART(testDisc)
 
 TAUTLINE_PART(testSubPixel)
 {
-  // A grey ramp across an edge at x = 20.25: linear interpolation finds it exactly.
+  // A gray ramp across an edge at x = 20.25: linear interpolation finds it exactly.
   Picture picture = paint(60, 40, [](double, double) { return -1.0; });
   for (Index j = 10; j < 30; ++j)
   {
@@ -118,7 +118,7 @@ TAUTLINE_PART(testExtremes)
   TAUTLINE_CHECK_THROWS(traceSilhouette(single.view()), wording("one-value"));
 }
 
-TAUTLINE_PART(testRefused)
+TAUTLINE_PART(testRejected)
 {
   TAUTLINE_CHECK_THROWS(traceSilhouette(ImageView{}), "empty");
   Picture white = paint(10, 10, [](double, double) { return 1.0; });

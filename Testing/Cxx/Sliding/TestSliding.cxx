@@ -154,7 +154,7 @@ MeshData looseBlock(CellType type, double amplitude)
   return data;
 }
 
-/// With the larger amplitude, determinants are in the window, too.
+/// With the larger amplitude, determinants are also in the window.
 void testBarrierGradient(CellType type, CornerMeasure measure, double amplitude)
 {
   const bool flat = topology(type).dimension == 2;
@@ -496,7 +496,7 @@ TAUTLINE_PART(testBall)
   TAUTLINE_CHECK_EQUAL(invalidOf(after), 0);
   TAUTLINE_CHECK_NEAR(twoSided(sliding.data, after) / sliding.diagonal, 0, 1.1e-3);
   TAUTLINE_CHECK(after.points == improved(sliding, 3).points);
-  // What is fixed keeps its bits.
+  // Fixed points keep their bits.
   for (Index p = 0; p < after.numberOfPoints(); p += 2)
   {
     sliding.fixed[p] = 1;

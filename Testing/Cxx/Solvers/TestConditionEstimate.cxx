@@ -341,7 +341,7 @@ TAUTLINE_PART(testEquations)
   TAUTLINE_EACH_OF(const double value, elementContributions(plain, false).largestEigenvalue,
     TAUTLINE_CHECK_NEAR(value, 1.5, 1e-14));
   TAUTLINE_CHECK_NEAR(elementContributions(plain, false).bound, 9.0, 1e-13);
-  box.points[3 * (3 * 7 + 3)] += 0.98; // an inner point close to its neighbour on the right
+  box.points[3 * (3 * 7 + 3)] += 0.98; // an inner point close to its neighbor on the right
   box.points[3 * (3 * 7 + 3) + 1] += 0.005;
   const Mesh needle = box.mesh();
   const EllipticSystem bad(needle, EllipticProblem());
@@ -364,8 +364,8 @@ TAUTLINE_PART(testTrouble)
   const SparseMatrix neumann = gridMatrix(n,
     [=](int i, int j)
     {
-      const int neighbours = (i % n > 0) + (i % n < n - 1) + (i / n > 0) + (i / n < n - 1);
-      return i == j ? neighbours : -1.0;
+      const int neighbors = (i % n > 0) + (i % n < n - 1) + (i / n > 0) + (i / n < n - 1);
+      return i == j ? neighbors : -1.0;
     });
   const SparseMatrix shifted = laplacian(n, 1.0, -1.0);
   for (const Preconditioner preconditioner : { Preconditioner::None, Preconditioner::Jacobi })

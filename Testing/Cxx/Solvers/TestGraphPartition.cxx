@@ -65,7 +65,7 @@ TAUTLINE_TEST(TestGraphPartition)
     try
     {
       partitionGraph(mesh, parts);
-      TAUTLINE_CHECK(!"refused");
+      TAUTLINE_CHECK(!"rejected");
     }
     catch (const Error& error)
     {

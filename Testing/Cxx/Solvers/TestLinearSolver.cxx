@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Linear systems through PETSc: every method with every preconditioner against a direct solve, why
-// a solve fails, options and their databases, limits, reuse, and whatever is refused.
+// a solve fails, options and their databases, limits, reuse, and whatever is rejected.
 #include "Registry.h"
 #include "Systems.h"
 #include "tautline/Elliptic/EllipticSystem.h"
@@ -159,8 +159,8 @@ TAUTLINE_PART(testSingular)
   SparseMatrix neumann = gridMatrix(n,
     [=](int i, int j)
     {
-      const int neighbours = (i % n > 0) + (i % n < n - 1) + (i / n > 0) + (i / n < n - 1);
-      return i == j ? neighbours : -1.0;
+      const int neighbors = (i % n > 0) + (i % n < n - 1) + (i / n > 0) + (i / n < n - 1);
+      return i == j ? neighbors : -1.0;
     });
   for (const SparseMatrix* matrix : { &empty, &neumann })
   {
@@ -241,7 +241,7 @@ TAUTLINE_PART(testOptions)
     const Context context(bad.text);
     TAUTLINE_CHECK_THROWS(solved(systemOf(a), wrong, b), bad.named);
   }
-  // What only the set-up can miss is missed each time.
+  // An error that only the set-up can detect is detected each time.
   TAUTLINE_LET(SolverOptions, late, preconditioner = Preconditioner::Jacobi,
     petscOptions = "-sub_pc_type icc");
   LinearSolver mistaken(systemOf(a), late);
@@ -249,13 +249,13 @@ TAUTLINE_PART(testOptions)
   TAUTLINE_CHECK_THROWS(mistaken.setUp(), "-sub_pc_type");
   TAUTLINE_CHECK_THROWS(mistaken.solve(b.data(), x.data()), "-sub_pc_type");
 
-#define REFUSED(change, text) \
+#define REJECTED(change, text) \
   TAUTLINE_CHECK_THROWS(solved(systemOf(a), TAUTLINE_CHANGED(SolverOptions(), change), b), text)
-  REFUSED(omega = 2.0, wording("between-0-and-2"));
-  REFUSED(relativeTolerance = -1.0, "tolerance");
-  REFUSED(restart = 0, "restart");
-  REFUSED(method = static_cast<KrylovMethod>(17), "number 17");
-  REFUSED(preconditioner = static_cast<Preconditioner>(-2), "number -2");
+  REJECTED(omega = 2.0, wording("between-0-and-2"));
+  REJECTED(relativeTolerance = -1.0, "tolerance");
+  REJECTED(restart = 0, "restart");
+  REJECTED(method = static_cast<KrylovMethod>(17), "number 17");
+  REJECTED(preconditioner = static_cast<Preconditioner>(-2), "number -2");
 }
 
 /// Restart, relaxation, limits, the observer, the initial guess and Ritz values.
@@ -457,7 +457,7 @@ TAUTLINE_PART(testTogether)
   TAUTLINE_CHECK_EQUAL(solved(systemOf(a), nested, b).solution.iterations, 5);
 }
 
-/// What PETSc is lent stays as it is, even if an option has it scaled or overwritten.
+/// Borrowed data of PETSc stay as they are, even if an option scales or overwrites them.
 TAUTLINE_PART(testUnchanged)
 {
   const SparseMatrix a = laplacian(15, 3.0), copy = a;
@@ -541,7 +541,7 @@ TAUTLINE_PART(testFastMultigrid)
   TAUTLINE_CHECK(two.iterations <= 3 * one.iterations);
 }
 
-TAUTLINE_PART(testRefused)
+TAUTLINE_PART(testRejected)
 {
   const SparseMatrix none;
   TAUTLINE_CHECK_THROWS(LinearSolver(systemOf(none), {}), wording("no-unknowns"));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// PETSc options given as text: what is permitted, what is refused before PETSc sees it, files that
+// PETSc options given as text: what is permitted, what is rejected before PETSc sees it, files that
 // nothing reads or writes, and every method and preconditioner that this PETSc has.
 #include "Registry.h"
 #include "Systems.h"
@@ -41,12 +41,12 @@ std::string errorOf(const std::string& text, const SparseMatrix& matrix)
 }
 
 //------------------------------------------------------------------------------
-void testRefused()
+void testRejected()
 {
   const SparseMatrix a = laplacian(8);
   const std::string file = directory + "/petsc_wrote_this.txt";
   std::remove(file.c_str());
-  const std::vector<std::string> refused = { "-ksp_view ascii:" + file,
+  const std::vector<std::string> rejected = { "-ksp_view ascii:" + file,
     "-ksp_view ascii:" + file + "::append", "-ksp_view binary:" + file, "-ksp_view hdf5:" + file,
     "-ksp_view_mat ascii:" + file, "-ksp_view_solution ascii:" + file,
     "-ksp_view_rhs ascii:" + file, "-ksp_view_pre ascii:" + file,
@@ -68,7 +68,7 @@ void testRefused()
     "-pc_hypre_boomeramg_print_statistics", "-nox", "-on_error_malloc_dump", "-cuda_device 0",
     "-mpi_linear_solver_server", "-matload_block_size 2", "--ksp_rtol 1e-3",
     "-KSP_VIEW ascii:" + file };
-  for (const std::string& option : refused)
+  for (const std::string& option : rejected)
   {
     const Context context(option);
     const std::string error = errorOf(option, a);
@@ -153,10 +153,10 @@ std::vector<std::string> namesIn(PetscFunctionList list)
   return all;
 }
 
-/// What became of one choice.
+/// The outcome of one choice.
 enum class Outcome
 {
-  Refused,
+  Rejected,
   Failed, // with a reason, or an error
   Solved
 };
@@ -183,7 +183,7 @@ Outcome attempt(
   catch (const Error& error)
   {
     TAUTLINE_CHECK(contains(error.what(), of));
-    return contains(error.what(), wording("possible-is")) ? Outcome::Refused : Outcome::Failed;
+    return contains(error.what(), wording("possible-is")) ? Outcome::Rejected : Outcome::Failed;
   }
   TAUTLINE_EACH_OF(const double value, x, TAUTLINE_CHECK(std::isfinite(value)));
   const double residual = relativeResidual(a, x, b);
@@ -197,12 +197,12 @@ Outcome attempt(
   return Outcome::Failed;
 }
 
-/// All that are registered, those that a user may not choose, too.
+/// All registered ones, including those that a user may not choose.
 void testEveryType()
 {
   const SparseMatrix a = laplacian(12), indefinite = laplacian(12, 1.0, -2.1);
   LinearSystem shifted = TAUTLINE_CHANGED(systemOf(indefinite), positiveDefinite = false);
-  int solved = 0, refused = 0;
+  int solved = 0, rejected = 0;
   for (const std::string& type : namesIn(KSPList))
   {
     bool any = false, none = true;
@@ -213,18 +213,18 @@ void testEveryType()
       const std::string text = "-ksp_type " + type;
       const Outcome outcome = attempt(systemOf(a), text, options, "-ksp_type");
       any = any || outcome == Outcome::Solved;
-      none = none && outcome == Outcome::Refused;
+      none = none && outcome == Outcome::Rejected;
       attempt(shifted, text, options, "-ksp_type");
     }
     // A permitted method solves this with some preconditioner.
     TAUTLINE_CHECK_EQUAL(
       any || type == "preonly" ? "solves" : type, none ? type : std::string("solves"));
     solved += any;
-    refused += none;
+    rejected += none;
   }
   TAUTLINE_CHECK(solved >= 25);
-  TAUTLINE_CHECK(refused >= 5);
-  solved = refused = 0;
+  TAUTLINE_CHECK(rejected >= 5);
+  solved = rejected = 0;
   for (const std::string& type : namesIn(PCList))
   {
     bool any = false, none = true;
@@ -236,15 +236,15 @@ void testEveryType()
         const std::string text = "-pc_type " + type + " -ksp_type " + method;
         const Outcome outcome = attempt(system, text, {}, "-pc_type");
         any = any || outcome == Outcome::Solved;
-        none = none && outcome == Outcome::Refused;
+        none = none && outcome == Outcome::Rejected;
       }
     }
     TAUTLINE_CHECK_EQUAL(any ? "solves" : type, none ? type : std::string("solves"));
     solved += any;
-    refused += none;
+    rejected += none;
   }
   TAUTLINE_CHECK(solved >= 15);
-  TAUTLINE_CHECK(refused >= 10);
+  TAUTLINE_CHECK(rejected >= 10);
 }
 
 /// Errors speak of the user's choice, not of options that nobody gave.
@@ -295,7 +295,8 @@ void testWording()
   TAUTLINE_CHECK(!solution.message.empty());
 }
 
-/// Split by component where each point has several unknowns, else an error that says why not.
+/// Split by component where each point has several unknowns, otherwise an error that states the
+/// reason.
 void testFieldSplit()
 {
   const SparseMatrix a = laplacian(12);
@@ -307,11 +308,11 @@ void testFieldSplit()
   const std::string error = errorOf("-pc_type fieldsplit", a);
   TAUTLINE_CHECK(contains(error, wording("one-unknown-per-point")));
   TAUTLINE_CHECK(contains(error, wording("pc-type-fieldsplit")));
-  for (const char* refused : { "-fieldsplit_0_pc_view ascii:x", "-fieldsplit_0_pc_type python",
+  for (const char* rejected : { "-fieldsplit_0_pc_view ascii:x", "-fieldsplit_0_pc_type python",
          "-pc_fieldsplit_block_size 3", "-pc_fieldsplit_type schur" })
   {
-    const Context context(refused);
-    TAUTLINE_CHECK(attempt(system, refused, {}, "The PETSc option") != Outcome::Solved);
+    const Context context(rejected);
+    TAUTLINE_CHECK(attempt(system, rejected, {}, "The PETSc option") != Outcome::Solved);
   }
 }
 
@@ -355,7 +356,7 @@ void testFalseConvergence()
   }
 }
 
-/// However a solve ends, the residual is that of what it returns.
+/// However a solve ends, the residual belongs to the returned solution.
 void testResidualsOfFailures()
 {
   struct Case
@@ -401,7 +402,7 @@ TAUTLINE_TEST(TestPetscOptions)
 {
   directory = argv[2];
   TAUTLINE_RUN(testSurroundings()); // before PETSc is initialized
-  TAUTLINE_RUN(testRefused());
+  TAUTLINE_RUN(testRejected());
   TAUTLINE_RUN(testEveryType());
   TAUTLINE_RUN(testFieldSplit());
   TAUTLINE_RUN(testWording());

@@ -13,14 +13,14 @@ using namespace tautline;
 
 namespace
 {
-/// The owners that are wanted, per point of the piece.
+/// The target owners, per point of the piece.
 std::vector<int> ofPiece(const DistributedMesh& mesh, const std::vector<int>& ofLocal)
 {
   return collect<int>(
     mesh.localOfPiece(), [&](const Index local) { return local < 0 ? 0 : ofLocal[local]; });
 }
 
-/// The same rank is wanted for a point by all that have it.
+/// All ranks that have a point have the same target owner for it.
 void checkAgreed(const DistributedMesh& mesh, const std::vector<int>& owners)
 {
   std::vector<Index> pairs;
@@ -88,7 +88,7 @@ void testDivision(RankGroup& group, Communicator communicator, CellType type, Cu
   }
   checkBalance(graph);
 
-  // Few points on the border: no more than a third above those of the boxes, and far fewer than of
+  // Few points on the border: no more than a third above the boxes', and far fewer than of
   // points that are dealt out.
   auto dealt = collect<int>(tree.localOfPiece(),
     [&](const Index local) { return static_cast<int>(tree.numbers()[local] % group.size()); });

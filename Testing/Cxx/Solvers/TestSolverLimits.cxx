@@ -115,7 +115,7 @@ void testWatchdog()
   TAUTLINE_CHECK_EQUAL(depth, 4);
   TAUTLINE_CHECK(!insideWatchedCall());
 
-  // A time limit; the next work waits for what goes on, and gives up, too, or has its turn.
+  // A time limit; the next work waits for the running one, and also stops, or has its turn.
   const auto going = std::make_shared<std::atomic<bool>>(false);
   Stopwatch time;
   result = runWatched(
@@ -156,7 +156,7 @@ void testWatchdog()
       result == (needed < CancelGrace ? WatchResult::Finished : WatchResult::Cancelled));
   }
 
-  // What the cancelling function throws ends the waiting.
+  // An exception of the cancelling function ends the waiting.
   TAUTLINE_CHECK_THROWS(runWatched([](WatchedWork&) { sleepFor(0.4); },
                           { 0.0, []() -> bool { throw std::runtime_error("of the user"); } }),
     wording("of-the-user"));

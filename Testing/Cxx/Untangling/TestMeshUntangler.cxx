@@ -72,11 +72,11 @@ TAUTLINE_PART(testValid)
   }
 }
 
-/// What cannot be: an element of fixed points; one whose fixed neighbours leave no place.
+/// Infeasible elements: an element of fixed points; one whose fixed neighbors leave no place.
 TAUTLINE_PART(testImpossible)
 {
   MeshData data = blockMesh(CellType::Triangle, 4, 4, 0);
-  data.setPoint(6, { 2.5, 2.6, 0 }); // a point of the second row beyond its neighbours
+  data.setPoint(6, { 2.5, 2.6, 0 }); // a point of the second row beyond its neighbors
   auto grid = toGrid(data);
   const auto all =
     filledArray<vtkDoubleArray>("all", data.numberOfPoints(), [](Index) { return 1; });
@@ -122,7 +122,7 @@ TAUTLINE_PART(testImpossible)
   TAUTLINE_CHECK(moved > 0);
   filter->FreeInvalidOff();
 
-  // Freed but for the one point, the others cannot follow: or they can, and all is valid.
+  // Freed except for the one point, the others cannot follow: or they can, and all is valid.
   TAUTLINE_SET(all, Fill(0), Modified());
   filter->Update();
   TAUTLINE_CHECK_EQUAL(filter->GetInvertedAfter(), 0);

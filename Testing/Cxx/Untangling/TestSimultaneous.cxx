@@ -44,7 +44,7 @@ MeshData tangled(const MeshData& data, double part)
   return withPoints(data, perturb(Mesh(data.view()), nullptr, options).points);
 }
 
-/// Six equilateral triangles around a vertex that is outside: its best place is the centre.
+/// Six equilateral triangles around a vertex that is outside: its best place is the center.
 TAUTLINE_PART(testHexagon)
 {
   for (const Vec3& start : { Vec3{ 1.6, 0.4, 0 }, Vec3{ -0.2, 3.0, 0 }, Vec3{ -1.3, 0.2, 0 } })

@@ -212,7 +212,7 @@ TAUTLINE_PART(testTurnedHoles)
   }
 }
 
-/// Only the neighbourhood of inverted elements moves.
+/// Only the neighborhood of inverted elements moves.
 TAUTLINE_PART(testLocality)
 {
   MeshData data = block(CellType::Tetrahedron, 12);

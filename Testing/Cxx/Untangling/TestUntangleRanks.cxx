@@ -12,7 +12,7 @@ constexpr int ranks = 3;
 constexpr double tooFew = 1000; // bytes
 const double NaN = std::numeric_limits<double>::quiet_NaN();
 
-/// What a rank changes before all untangle.
+/// The change of a rank before all untangle.
 using Change = std::function<void(const DistributedMesh& mesh, UntangleOptions& options)>;
 
 /// The message of each rank; "" where it had no error.
@@ -72,11 +72,11 @@ void testFailures()
       "The observer has failed.");
     check([=](const DistributedMesh& mesh, UntangleOptions& options)
       { options.fixed = mesh.group().rank() == wrong ? nullptr : options.fixed; },
-      "The fixed points of a mesh on several ranks must be given, see rankBoundary().");
+      "The fixed points of a mesh on several ranks must be specified, see rankBoundary().");
   }
 }
 
-/// Points of the piece of one rank that are not finite, whichever: all refuse the mesh.
+/// Points of the piece of one rank that are not finite, whichever: all reject the mesh.
 void testNotFinite()
 {
   const MeshData whole = jittered(CellType::Tetrahedron, 5, 0.45);
@@ -106,7 +106,7 @@ void testNotFinite()
   }
 }
 
-/// Points of one rank that became NaN: the mesh stays invalid there, and all ranks say so.
+/// Points of one rank that became NaN: the mesh stays invalid there, and all ranks report it.
 void testBrokenLater()
 {
   const MeshData whole = jittered(CellType::Tetrahedron, 5, 0.45);

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""check_licence.py SOURCE_TREE [--write]: every source file names its licence in its first lines, as SPDX has it.
+"""check_license.py SOURCE_TREE [--write]: every source file names its license in its first lines, as SPDX has it.
 
-REUSE.toml has the licence of all other files, LICENSES its text. --write inserts the line where it is missing: after #!
+REUSE.toml has the license of all other files, LICENSES its text. --write inserts the line where it is missing: after #!
 and <?xml ...?>, before everything else.
 """
 
@@ -10,7 +10,7 @@ import re
 import sys
 from pathlib import Path
 
-LICENCE = "SPDX-License-Identifier: BSD-3-Clause"
+LICENSE = "SPDX-License-Identifier: BSD-3-Clause"
 DIRECTORIES = ("Filters", "Readers", "ServerManager", "Plugin", "Testing", "python", ".ci")
 COMMENTS = {".h": "// {}", ".cxx": "// {}", ".py": "# {}", ".cmake": "# {}", ".sh": "# {}"}
 NAMES = {"CMakeLists.txt": "# {}", "run": "# {}"}
@@ -18,7 +18,7 @@ FIRST_LINES = 2  # among which it is looked for
 
 
 def comment_of(path: Path):
-    """How a line of comment is written in this file, or None if the file needs no licence."""
+    """How a line of comment is written in this file, or None if the file needs no license."""
     return NAMES.get(path.name) or COMMENTS.get(path.suffix)
 
 
@@ -28,15 +28,15 @@ def sources(top: Path):
         yield from (p for p in sorted((top / directory).rglob("*")) if p.is_file() and comment_of(p))
 
 
-def with_licence(text: str, comment: str) -> str:
-    """The text of a file with the line of its licence."""
+def with_license(text: str, comment: str) -> str:
+    """The text of a file with the line of its license."""
     lines = text.split("\n")
-    lines.insert(1 if lines[0].startswith("#!") else 0, comment.format(LICENCE))
+    lines.insert(1 if lines[0].startswith("#!") else 0, comment.format(LICENSE))
     return "\n".join(lines)
 
 
 def reuse_complaints(top: Path):
-    """What the REUSE specification requires beside the lines in sources: a licence for every file, the text of each."""
+    """Violations of the REUSE specification beside the lines in sources: a license for every file, the text of each."""
     text = (top / "REUSE.toml").read_text(encoding="utf-8")
     named = set(re.findall(r'^SPDX-License-Identifier = "(.*)"$', text, re.MULTILINE))
     if 'path = "**"' not in text or text.count("[[annotations]]") != text.count("SPDX-FileCopyrightText"):
@@ -55,15 +55,15 @@ def main(top: Path, write: bool) -> int:
     files, missing = list(sources(top)), 0
     for path in files:
         text = path.read_text(encoding="utf-8")
-        if any(LICENCE in line for line in text.split("\n")[:FIRST_LINES]):
+        if any(LICENSE in line for line in text.split("\n")[:FIRST_LINES]):
             continue
         if write:
-            path.write_text(with_licence(text, comment_of(path)), encoding="utf-8")
+            path.write_text(with_license(text, comment_of(path)), encoding="utf-8")
             continue
         missing += 1
-        print(f"{path} has no line '{LICENCE}': {Path(__file__).name} SOURCE_TREE --write inserts it")
+        print(f"{path} has no line '{LICENSE}': {Path(__file__).name} SOURCE_TREE --write inserts it")
     wrong = list(reuse_complaints(top))
-    print(*wrong, f"{len(files)} files, {missing} without licence", sep="\n")
+    print(*wrong, f"{len(files)} files, {missing} without license", sep="\n")
     return 1 if missing or wrong or not files else 0
 
 
