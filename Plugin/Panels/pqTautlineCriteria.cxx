@@ -142,6 +142,7 @@ pqTautlineCriteria::pqTautlineCriteria(
 
   this->Choice->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
   auto* buttons = new QHBoxLayout;
+  buttons->addWidget(this->Color);
   buttons->addStretch();
   buttons->addWidget(edit);
   buttons->addWidget(load);
@@ -150,7 +151,6 @@ pqTautlineCriteria::pqTautlineCriteria(
   layout->setContentsMargins(0, 0, 0, 0);
   layout->addWidget(this->Choice);
   layout->addLayout(buttons);
-  layout->addWidget(this->Color);
   layout->addWidget(this->Problem);
 
   QObject::connect(this->Choice, QOverload<int>::of(&QComboBox::currentIndexChanged), this,

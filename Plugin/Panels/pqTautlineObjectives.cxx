@@ -5,19 +5,19 @@
 
 #include "pqDoubleLineEdit.h"
 
-#include "vtkCommand.h"
-#include "vtkEventQtSlotConnect.h"
 #include "vtkSMEnumerationDomain.h"
 #include "vtkSMIntRangeDomain.h"
 #include "vtkSMProperty.h"
 #include "vtkSMPropertyGroup.h"
 #include "vtkSMProxy.h"
-#include "vtkSMUncheckedPropertyHelper.h"
 
 #include <QAbstractItemView>
 #include <QComboBox>
+#include <QDialog>
+#include <QDialogButtonBox>
 #include <QDoubleValidator>
 #include <QGridLayout>
+#include <QHBoxLayout>
 #include <QLabel>
 #include <QSpinBox>
 #include <QStandardItemModel>
@@ -61,100 +61,155 @@ int mostObjectives(vtkSMPropertyGroup* group)
 pqTautlineObjectives::pqTautlineObjectives(
   vtkSMProxy* smproxy, vtkSMPropertyGroup* smgroup, QWidget* parentObject)
   : Superclass(smproxy, smgroup, parentObject)
-  , Number(new QSpinBox(this))
-  , Add(new QToolButton(this))
-  , Problem(new QLabel(this))
-  , Observer(vtkSmartPointer<vtkEventQtSlotConnect>::New())
+  , Text(new QLabel(this))
+  , Warning(new QLabel(this))
+  , Dialog(new QDialog(this))
+  , Number(new QSpinBox(this->Dialog))
+  , Scalarization(this->makeChoice(ScalarizationProperty))
+  , Add(new QToolButton(this->Dialog))
+  , Problem(new QLabel(this->Dialog))
 {
   this->setShowLabel(false);
-  this->Number->setObjectName("Number");
-  this->Number->hide();
-  this->Add->setObjectName("Add");
-  this->Add->setText("Add Objective");
-  this->Problem->setObjectName("Problem");
-  this->Problem->setWordWrap(true);
+  this->Text->setObjectName("Text");
+  this->Text->setWordWrap(true);
+  this->Warning->setObjectName("Warning");
+  this->Warning->setWordWrap(true);
+  auto* edit = new QToolButton(this);
+  edit->setObjectName("Edit");
+  edit->setText("&Edit...");
+  edit->setToolTip("Edit the objectives in a table: metric, template, target and weight of each, "
+                   "and how they are combined.");
+  auto* line = new QHBoxLayout;
+  line->addWidget(new QLabel("Objectives", this));
+  line->addWidget(this->Text, 1);
+  line->addWidget(edit);
+  auto* layout = new QVBoxLayout(this);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->addLayout(line);
+  layout->addWidget(this->Warning);
 
-  auto* table = new QGridLayout;
-  table->setHorizontalSpacing(2);
-  for (int column = MetricColumn; column <= WeightColumn; ++column)
-  {
-    table->addWidget(new QLabel(Headers[column], this), 0, column);
-    table->setColumnStretch(column, Stretches[column]);
-  }
   const int most = mostObjectives(smgroup);
   this->Number->setRange(1, most);
   this->addPropertyLink(this->Number, NumberProperty);
   for (int number = 1; number <= most; ++number)
   {
-    const Row row = this->makeRow(number);
-    table->addWidget(row.metric, number, MetricColumn);
-    table->addWidget(row.objectiveTemplate, number, TemplateColumn);
-    table->addWidget(row.target, number, TargetColumn);
-    table->addWidget(row.weight, number, WeightColumn);
-    table->addWidget(row.remove, number, RemoveColumn);
-    this->Rows.push_back(row);
+    this->Rows.push_back(this->makeRow(number));
   }
-  auto* layout = new QVBoxLayout(this);
-  layout->setContentsMargins(0, 0, 0, 0);
-  layout->addLayout(table);
-  layout->addWidget(this->Add);
-  layout->addWidget(this->Problem);
+  this->makeDialog();
 
+  QObject::connect(edit, &QToolButton::clicked, this, &pqTautlineObjectives::edit);
   QObject::connect(this->Add, &QToolButton::clicked, this, &pqTautlineObjectives::add);
   const auto changed = QOverload<int>::of(&QComboBox::currentIndexChanged);
+  std::vector<QComboBox*> boxes = { this->Scalarization };
   for (const Row& row : this->Rows)
   {
-    for (QComboBox* box : { row.metric, row.objectiveTemplate, row.target })
-    {
-      QObject::connect(box, changed, this, &pqTautlineObjectives::refresh);
-      QObject::connect(box, changed, this, &pqTautlineObjectives::changeAvailable);
-    }
+    boxes.insert(boxes.end(), { row.metric, row.objectiveTemplate, row.target });
     QObject::connect(row.weight, &pqDoubleLineEdit::textChangedAndEditingFinished, this,
       &pqTautlineObjectives::changeAvailable);
+  }
+  for (QComboBox* box : boxes)
+  {
+    QObject::connect(box, changed, this, &pqTautlineObjectives::refresh);
+    QObject::connect(box, changed, this, &pqTautlineObjectives::changeAvailable);
   }
   const auto counted = QOverload<int>::of(&QSpinBox::valueChanged);
   QObject::connect(this->Number, counted, this, &pqTautlineObjectives::refresh);
   QObject::connect(this->Number, counted, this, &pqTautlineObjectives::changeAvailable);
-  this->Observer->Connect(smproxy->GetProperty(ScalarizationProperty),
-    vtkCommand::UncheckedPropertyModifiedEvent, this, SLOT(refresh()));
   this->refresh();
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineObjectives::makeDialog()
+{
+  this->Dialog->setObjectName("ObjectivesDialog");
+  this->Dialog->setWindowTitle("Objectives");
+  this->Dialog->resize(720, 260);
+  this->Number->setObjectName("Number");
+  this->Number->hide();
+  this->Add->setObjectName("Add");
+  this->Add->setText("&Add Objective");
+  this->Problem->setObjectName("Problem");
+  this->Problem->setWordWrap(true);
+  auto* buttons =
+    new QDialogButtonBox(QDialogButtonBox::Ok | QDialogButtonBox::Cancel, this->Dialog);
+  buttons->setObjectName("Buttons");
+
+  auto* table = new QGridLayout;
+  for (int column = MetricColumn; column <= WeightColumn; ++column)
+  {
+    table->addWidget(new QLabel(Headers[column], this->Dialog), 0, column);
+    table->setColumnStretch(column, Stretches[column]);
+  }
+  int line = 0;
+  for (const Row& row : this->Rows)
+  {
+    ++line;
+    table->addWidget(row.metric, line, MetricColumn);
+    table->addWidget(row.objectiveTemplate, line, TemplateColumn);
+    table->addWidget(row.target, line, TargetColumn);
+    table->addWidget(row.weight, line, WeightColumn);
+    table->addWidget(row.remove, line, RemoveColumn);
+  }
+  auto* combination = new QHBoxLayout;
+  combination->addWidget(this->Add);
+  combination->addStretch();
+  auto* label = new QLabel("&Scalarization", this->Dialog);
+  label->setBuddy(this->Scalarization);
+  combination->addWidget(label);
+  combination->addWidget(this->Scalarization);
+  auto* layout = new QVBoxLayout(this->Dialog);
+  layout->addLayout(table);
+  layout->addLayout(combination);
+  layout->addWidget(this->Problem);
+  layout->addStretch();
+  layout->addWidget(buttons);
+  QObject::connect(buttons, &QDialogButtonBox::accepted, this->Dialog, &QDialog::accept);
+  QObject::connect(buttons, &QDialogButtonBox::rejected, this->Dialog, &QDialog::reject);
 }
 
 //------------------------------------------------------------------------------
 pqTautlineObjectives::~pqTautlineObjectives() = default;
 
 //------------------------------------------------------------------------------
+QComboBox* pqTautlineObjectives::makeChoice(const QString& property)
+{
+  auto* box = new QComboBox(this->Dialog);
+  box->setObjectName(property);
+  this->addPropertyLink(box, property.toUtf8().constData());
+  box->view()->setMinimumWidth(box->view()->sizeHintForColumn(0));
+  return box;
+}
+
+//------------------------------------------------------------------------------
 pqTautlineObjectives::Row pqTautlineObjectives::makeRow(int number)
 {
-  const auto choice = [&](const char* property)
-  {
-    auto* box = new QComboBox(this);
-    box->setObjectName(nameOf(property, number));
-    // As narrow as the panel; the list that opens is as wide as its texts.
-    constexpr int fewestLetters = 3;
-    box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
-    box->setMinimumContentsLength(fewestLetters);
-    this->addPropertyLink(box, box->objectName().toUtf8().constData());
-    box->view()->setMinimumWidth(box->view()->sizeHintForColumn(0));
-    return box;
-  };
   Row row;
-  row.metric = choice("Metric");
-  row.objectiveTemplate = choice("Template");
-  row.target = choice("Target");
-  row.weight = new pqDoubleLineEdit(this);
+  row.metric = this->makeChoice(nameOf("Metric", number));
+  row.objectiveTemplate = this->makeChoice(nameOf("Template", number));
+  row.target = this->makeChoice(nameOf("Target", number));
+  row.weight = new pqDoubleLineEdit(this->Dialog);
   row.weight->setObjectName(nameOf("Weight", number));
   row.weight->setValidator(new QDoubleValidator(row.weight));
   row.weight->setMinimumWidth(row.weight->fontMetrics().horizontalAdvance("0.000"));
   this->pqPropertyWidget::addPropertyLink(row.weight, "text2",
     SIGNAL(textChangedAndEditingFinished()),
     this->propertyGroup()->GetProperty(row.weight->objectName().toUtf8().constData()));
-  row.remove = new QToolButton(this);
+  row.remove = new QToolButton(this->Dialog);
   row.remove->setObjectName(nameOf("Remove", number));
   row.remove->setText(QString(QChar(0x2212))); // minus
   const int index = number - 1;
   QObject::connect(row.remove, &QToolButton::clicked, this, [this, index] { this->remove(index); });
   return row;
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineObjectives::edit()
+{
+  const QStringList before = this->state();
+  if (this->Dialog->exec() != QDialog::Accepted)
+  {
+    this->setState(before);
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -180,10 +235,10 @@ void pqTautlineObjectives::remove(int index)
 }
 
 //------------------------------------------------------------------------------
-int pqTautlineObjectives::valueOf(const QComboBox* box, const char* property, int number) const
+int pqTautlineObjectives::valueOf(const QComboBox* box, const QString& property) const
 {
   auto* values = this->propertyGroup()
-                   ->GetProperty(nameOf(property, number).toUtf8().constData())
+                   ->GetProperty(property.toUtf8().constData())
                    ->FindDomain<vtkSMEnumerationDomain>();
   int valid = 0;
   const int value = values ? values->GetEntryValue(box->currentText().toUtf8(), valid) : 0;
@@ -214,53 +269,112 @@ QString pqTautlineObjectives::restrict(QComboBox* box, const std::vector<QString
 }
 
 //------------------------------------------------------------------------------
+QStringList pqTautlineObjectives::state() const
+{
+  QStringList values = { QString::number(this->Number->value()),
+    this->Scalarization->currentText() };
+  for (const Row& row : this->Rows)
+  {
+    values << row.metric->currentText() << row.objectiveTemplate->currentText()
+           << row.target->currentText() << row.weight->text();
+  }
+  return values;
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineObjectives::setState(const QStringList& state)
+{
+  if (state == this->state())
+  {
+    return;
+  }
+  auto value = state.begin();
+  this->Number->setValue(value++->toInt());
+  this->Scalarization->setCurrentText(*value++);
+  for (const Row& row : this->Rows)
+  {
+    row.metric->setCurrentText(*value++);
+    row.objectiveTemplate->setCurrentText(*value++);
+    row.target->setCurrentText(*value++);
+    row.weight->setTextAndResetCursor(*value++);
+    Q_EMIT row.weight->textChangedAndEditingFinished();
+  }
+}
+
+//------------------------------------------------------------------------------
+QString pqTautlineObjectives::summary() const
+{
+  QStringList metrics;
+  for (int i = 0; i < this->Number->value(); ++i)
+  {
+    metrics << this->Rows[i].metric->currentText();
+  }
+  const QString text = metrics.join(", ");
+  return metrics.size() > 1 ? text + " (" + this->Scalarization->currentText() + ")" : text;
+}
+
+//------------------------------------------------------------------------------
+QString pqTautlineObjectives::refreshRow(int index, int count, const QString& noWeight)
+{
+  const Row& row = this->Rows[index];
+  const int number = index + 1;
+  const bool shown = index < count;
+  const std::initializer_list<QWidget*> widgets = { row.metric, row.objectiveTemplate, row.target,
+    row.weight, row.remove };
+  for (QWidget* widget : widgets)
+  {
+    widget->setVisible(shown);
+  }
+  const int metric = this->valueOf(row.metric, nameOf("Metric", number));
+  QStringList problems;
+  const auto check = [&](QComboBox* box, auto reason)
+  {
+    auto* values = this->propertyGroup()
+                     ->GetProperty(box->objectName().toUtf8().constData())
+                     ->FindDomain<vtkSMEnumerationDomain>();
+    std::vector<QString> reasons;
+    for (unsigned int entry = 0; entry < values->GetNumberOfEntries(); ++entry)
+    {
+      reasons.push_back(QString::fromStdString(reason(metric, values->GetEntryValue(entry))));
+    }
+    const QString problem = this->restrict(box, reasons);
+    if (shown && !problem.isEmpty())
+    {
+      problems << QString("Objective %1: %2").arg(number).arg(problem);
+    }
+  };
+  check(row.metric, [](int, int value) { return tautline::metricReason(value); });
+  check(row.objectiveTemplate, tautline::templateReason);
+  check(row.target, tautline::targetReason);
+  row.weight->setEnabled(noWeight.isEmpty());
+  row.weight->setToolTip(noWeight.isEmpty() ? "The weight of the objective; above 0." : noWeight);
+  row.remove->setEnabled(count > 1);
+  row.remove->setToolTip(count > 1 ? "Remove this objective." : "At least one objective stays.");
+  return problems.join("\n");
+}
+
+//------------------------------------------------------------------------------
 void pqTautlineObjectives::refresh()
 {
   const int count = this->Number->value();
-  const int scalarization =
-    vtkSMUncheckedPropertyHelper(this->proxy(), ScalarizationProperty).GetAsInt();
+  const int scalarization = this->valueOf(this->Scalarization, ScalarizationProperty);
   const QString noWeight = QString::fromStdString(tautline::weightReason(scalarization, count));
   QStringList problems;
   for (int i = 0; i < static_cast<int>(this->Rows.size()); ++i)
   {
-    const Row& row = this->Rows[i];
-    const std::initializer_list<QWidget*> widgets = { row.metric, row.objectiveTemplate, row.target,
-      row.weight, row.remove };
-    for (QWidget* widget : widgets)
-    {
-      widget->setVisible(i < count);
-    }
-    const int number = i + 1;
-    const int metric = this->valueOf(row.metric, "Metric", number);
-    const auto check = [&](QComboBox* box, const char* property, auto reason)
-    {
-      auto* values = this->propertyGroup()
-                       ->GetProperty(nameOf(property, number).toUtf8().constData())
-                       ->FindDomain<vtkSMEnumerationDomain>();
-      std::vector<QString> reasons;
-      for (unsigned int entry = 0; entry < values->GetNumberOfEntries(); ++entry)
-      {
-        reasons.push_back(QString::fromStdString(reason(metric, values->GetEntryValue(entry))));
-      }
-      const QString problem = this->restrict(box, reasons);
-      if (i < count && !problem.isEmpty())
-      {
-        problems << QString("Objective %1: %2").arg(number).arg(problem);
-      }
-    };
-    check(row.metric, "Metric", [](int, int value) { return tautline::metricReason(value); });
-    check(row.objectiveTemplate, "Template", tautline::templateReason);
-    check(row.target, "Target", tautline::targetReason);
-    row.weight->setEnabled(noWeight.isEmpty());
-    row.weight->setToolTip(noWeight.isEmpty() ? "The weight of the objective; above 0." : noWeight);
-    row.remove->setEnabled(count > 1);
-    row.remove->setToolTip(count > 1 ? "Remove this objective." : "At least one objective stays.");
+    problems << this->refreshRow(i, count, noWeight);
   }
+  problems.removeAll(QString());
   const int most = this->Number->maximum();
   this->Add->setEnabled(count < most);
   this->Add->setToolTip(count < most
       ? "Add an objective, to improve several metrics simultaneously."
       : QString("At most %1 objectives.").arg(most));
-  this->Problem->setText(problems.join("\n"));
-  this->Problem->setVisible(!problems.isEmpty());
+  this->Scalarization->setEnabled(count > 1);
+  for (QLabel* label : { this->Problem, this->Warning })
+  {
+    label->setText(problems.join("\n"));
+    label->setVisible(!problems.isEmpty());
+  }
+  this->Text->setText(this->summary());
 }

@@ -38,8 +38,9 @@
 
 namespace
 {
-constexpr int FewestLines = 2;
-constexpr int MostLines = 12;
+constexpr int FewestLines = 1;
+constexpr int MostLines = 8;       // the settings below stay in sight
+constexpr int MostOfVerdict = 100; // letters
 constexpr const char* LinkScheme = "element";
 constexpr const char* WarningPrefix = "Warning: ";
 constexpr const char* WarningColor = "#b00020";
@@ -175,11 +176,17 @@ void pqTautlineResultPanel::setText(const QString& text)
   const bool changed = this->Text != text;
   this->Text = text;
   this->Note->hide();
-  this->Browser->setHtml(text.isEmpty()
-      ? "<i>No result: the filter was not applied, or failed (see Output Messages).</i>"
-      : pqTautlineResultPanel::linked(text));
-  this->Copy->setEnabled(!text.isEmpty());
-  this->Save->setEnabled(!text.isEmpty());
+  QString html = pqTautlineResultPanel::linked(text);
+  // The verdict is the first line; a paragraph would be hard to read.
+  const int end = text.indexOf('\n');
+  if (end > 0 && end <= MostOfVerdict && !text.startsWith(WarningPrefix))
+  {
+    html.insert(html.indexOf("<br>"), "</b>").prepend("<b>");
+  }
+  this->Browser->setHtml(
+    text.isEmpty() ? "<i>No result yet. Errors are in Output Messages.</i>" : html);
+  this->Copy->setVisible(!text.isEmpty());
+  this->Save->setVisible(!text.isEmpty());
   this->Retry->setVisible(canFreeInvalid(this->proxy(), text));
   pqPipelineSource* filter = this->source();
   this->Compare->setVisible(!text.isEmpty() && filter && tautline::changesMesh(filter));

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Checks of the data and charts of a session, called in ParaView's Python shell: a failed one ends ParaView with 1.
 
-The numbers are computed here, from the points and cells, or are those of numpy.
+The numbers are computed here, from the points and cells, or come from numpy.
 """
 
 import functools
@@ -46,10 +46,17 @@ def find(name):
 
 
 def chart_of(source, port, kind):
-    """A view with the port's chart; what the plugin sets is set when the event loop runs next."""
+    """A view with the port's chart; the plugin's settings apply when the event loop runs next."""
     view = simple.CreateView(kind)
     simple.AssignViewToLayout(view)
     return simple.Show(simple.OutputPort(source, port), view)
+
+
+@check
+def result_number(name, number, value):
+    """A number that the last run of the last filter of this kind found."""
+    found = find(name).GetPropertyValue(number)
+    assert found == value, found
 
 
 @check
@@ -239,7 +246,7 @@ def open_clovers():
 
 @check
 def silhouettes_shown():
-    """The four pictures are drawn in their own colours, beside each other, without a legend."""
+    """The four pictures are drawn in their own colors, beside each other, without a legend."""
     reader = find("SilhouetteSetReader")
     shown = simple.GetDisplayProperties(reader)
     assert (shown.Visibility, shown.Representation, shown.MapScalars) == (1, "Surface", 0), shown.Representation
@@ -255,7 +262,7 @@ def silhouettes_shown():
 
 @check
 def side_by_side():
-    """Two linked views of the mesh before and after, with the same colours, one legend, and the worst values."""
+    """Two linked views of the mesh before and after, with the same colors, one legend, and the worst values."""
     views = [view for view in simple.GetViews() if view.GetXMLName() == "RenderView"][-2:]
     before, after = (find_named(name) for name in ("Before", "After"))
     assert before.Input == find("MeshOptimizer").Input and after.Input == find("MeshOptimizer")
@@ -295,7 +302,7 @@ def match_side_by_side():
 
 @check
 def sheet_shown():
-    """The sheet of pictures is drawn in its own colours: 4 queries, each with 3 matches, of which one can be right."""
+    """The sheet of pictures is drawn in its own colors: 4 queries, each with 3 matches, of which one can be right."""
     retrieval = find("ShapeRetrieval")
     port = simple.OutputPort(retrieval, 4)
     shown = simple.GetDisplayProperties(port)
@@ -384,7 +391,7 @@ def hole_of(warp):
 
 
 def hidden_representations(kind):
-    """What is drawn in the view, but is not in the pipeline browser."""
+    """The displays in the view that are not in the pipeline browser."""
     shown = simple.GetActiveView().GetProperty("HiddenRepresentations")
     return [shown[i] for i in range(len(shown)) if shown[i].GetXMLName() == kind]
 
@@ -466,7 +473,7 @@ def turned_hole():
 
 
 def legend_labels():
-    """The labels of the legend, or None for those of ParaView."""
+    """The labels of the legend, or None for ParaView's labels."""
     view = simple.GetActiveView()
     legend = next(one for one in view.Representations if one.GetXMLName() == "ScalarBarWidgetRepresentation")
     return list(legend.CustomLabels) if legend.UseCustomLabels else None
@@ -480,7 +487,7 @@ def set_criteria(criteria):
 
 @check
 def preset_labels():
-    """Of the preset fem, a warning beyond 3; failures beyond 10 are no colour of the map. Next: own limits."""
+    """The preset fem: a warning beyond 3; failures beyond 10 are no color of the map. Next: own limits."""
     assert legend_labels() == [3], legend_labels()
     limits = '{ "ideal": 1, "good": 1.2, "warn": 1.5, "fail": 2.5, "worst": 9 }'
     set_criteria('{ "criteria": [ { "metric": "imr", "limits": { "all": %s } } ] }' % limits)
@@ -541,7 +548,7 @@ def mesh_opaque():
 
 @check
 def objectives_table():
-    """Of three objectives the first was removed: the others moved up, with all they have; the run has two."""
+    """The first of three objectives was removed: the others moved up, with all they have; the run has two."""
     optimizer = find("MeshOptimizer")
     columns = ("Metric", "Template", "Target", "Weight")
     rows = [tuple(optimizer.GetPropertyValue(f"{column}{row}") for column in columns) for row in (1, 2)]
@@ -723,7 +730,7 @@ def ring_curved():
 
 @check
 def metric_shown():
-    """An ellipsoid per point, and the mesh as lines; the size on the inner circle is that of its radius."""
+    """An ellipsoid per point, and the mesh as lines; the size on the inner circle follows from its radius."""
     metric = find("MeshMetric")
     metric.UpdatePropertyInformation()
     assert simple.GetDisplayProperties(metric).Representation == "Wireframe"
