@@ -18,22 +18,24 @@ namespace
 
 struct Stop
 {
-  double badness; // 0 ideal, 1 the end of the acceptable range
+  double badness; // 0 for ideal, 1 at the end of the acceptable range
   const char* rgb;
 };
 
-// Lightness falls steadily, so that the map reads without colour vision too.
+// Lightness falls steadily, so that the map is also readable without color vision.
 constexpr Stop Ramp[] = { { 0.0, "0.84, 0.90, 0.93" }, { 0.3, "0.99, 0.90, 0.55" },
   { 0.65, "0.96, 0.55, 0.20" }, { 1.0, "0.72, 0.06, 0.11" } };
 constexpr const char* WorseColor = "0.30, 0.00, 0.05";
 constexpr const char* NanColor = "0.2, 0.2, 0.2";
 constexpr const char* EqualColor = "0.90, 0.90, 0.90";
+// Changes: neither the dark red of bad elements nor the blue of inverted ones.
 constexpr const char* BetterColor = "0.10, 0.52, 0.30";
+constexpr const char* DeclinedColor = "0.78, 0.40, 0.05";
 constexpr const char* WarningColor = "0.96, 0.55, 0.20";
-// Of the triangles of Horizon Neighbors: the more corners inside, the darker.
-constexpr const char* CaseColors[] = { "0.17, 0.42, 0.68", "0.49, 0.71, 0.87", "0.80, 0.89, 0.95" };
+// For the triangles of Horizon Neighbors: the more corners inside, the darker.
+constexpr const char* CaseColors[] = { "0.40, 0.16, 0.40", "0.66, 0.45, 0.66", "0.87, 0.77, 0.87" };
 
-/// The numbers of a colour.
+/// The components of a color.
 std::array<double, 3> parsed(const char* rgb)
 {
   std::istringstream text(rgb);
@@ -59,7 +61,7 @@ std::string settingsKey(std::string name)
   return name;
 }
 
-// "value, r, g, b, ..." by rising value.
+// "value, r, g, b, ..." in order of increasing value.
 std::string rgbPoints(const ColorMapSpec& spec)
 {
   std::vector<std::string> points;
@@ -77,7 +79,7 @@ std::string rgbPoints(const ColorMapSpec& spec)
   {
     if (std::isfinite(spec.worst) && spec.worst < spec.bad)
     {
-      // Just beyond the acceptable range, then to its very end: a sharp change of colour.
+      // Points just beyond and at the end of the acceptable range give a sharp change of color.
       add(spec.bad - 1e-6 * (spec.good - spec.bad), WorseColor);
       add(spec.worst, WorseColor);
     }
@@ -89,7 +91,7 @@ std::string rgbPoints(const ColorMapSpec& spec)
   return text.str();
 }
 
-/// An entry of the settings; that of a title is looked up by the unchanged name of the array.
+/// An entry of the settings; a title is looked up by the unchanged name of the array.
 std::string entry(const std::string& array, const std::string& title, const std::string& table)
 {
   const std::string key = settingsKey(array);
@@ -116,15 +118,15 @@ std::string metricTable(const ColorMapSpec& spec)
   return entry(spec.array, spec.title, json.str());
 }
 
-/// Green where the metric became better by half its acceptable range or more, red where worse.
+/// Green where the metric became better by half its acceptable range or more, brown where worse.
 std::string differenceTable(const ColorMapSpec& spec)
 {
   const double end = 0.5 * std::abs(spec.bad - spec.good);
   const bool largerIsBetter = spec.bad < spec.good;
-  const char* worse = Ramp[std::size(Ramp) - 1].rgb;
   std::ostringstream json;
-  json << "  \"RGBPoints\": [" << -end << ", " << (largerIsBetter ? worse : BetterColor) << ", 0, "
-       << EqualColor << ", " << end << ", " << (largerIsBetter ? BetterColor : worse) << "],\n"
+  json << "  \"RGBPoints\": [" << -end << ", " << (largerIsBetter ? DeclinedColor : BetterColor)
+       << ", 0, " << EqualColor << ", " << end << ", "
+       << (largerIsBetter ? BetterColor : DeclinedColor) << "],\n"
        << "  \"ColorSpace\": \"Lab\",\n"
        << "  \"AutomaticRescaleRangeMode\": \"Never\", \"ScalarRangeInitialized\": 1,\n"
        << "  \"NanColor\": [" << NanColor << "]";
@@ -132,7 +134,7 @@ std::string differenceTable(const ColorMapSpec& spec)
   return entry(spec.array + "_difference", title + ", after - before", json.str());
 }
 
-/// The colours of the metrics, from the smallest to the largest value of the array.
+/// The colors of a metric, from the smallest to the largest value of the array.
 std::string sequenceTable(const char* array, const char* title)
 {
   const ColorMapSpec unit = { array, 0.0, 1.0, 1.0, false };
@@ -164,7 +166,7 @@ std::string categoryTable(
       annotations + "],\n  \"IndexedColors\": [" + colors + "]");
 }
 
-/// The arrays that are no values of a metric.
+/// The arrays that do not hold values of a metric.
 std::vector<std::string> otherTables()
 {
   const char* good = Ramp[0].rgb;
@@ -172,10 +174,10 @@ std::vector<std::string> otherTables()
   const std::vector<Category> validity = { { Valid, "valid", good },
     { Degenerate, "degenerate", WorseColor }, { Inverted, "inverted", invertedColor() },
     { NotMeasured, "not measured", NanColor }, { NonFinite, "not finite", "1.0, 1.0, 0.0" } };
-  // Log10 of a ratio: 0 the mean, 2 a hundred times as much.
+  // Log10 of a ratio: 0 is the mean, 2 a hundred times the mean.
   const ColorMapSpec excess = { "Excess", 0.0, 2.0, 2.0, false,
     "Largest eigenvalue, log10 over mean" };
-  // Of a triangle that keeps its shape 0, stretched to twice its length 2.
+  // 0 for a triangle that keeps its shape, 2 for a triangle stretched to twice its length.
   ColorMapSpec shape = { "TMP shape", 0.0, 2.0, 2.0, false, "Shape similarity (TMP)" };
   const std::string warped = metricTable(shape);
   shape.array = "tmp_shape";
@@ -183,7 +185,7 @@ std::vector<std::string> otherTables()
     categoryTable("Validity_before", "Validity before", validity),
     categoryTable("Validity_after", "Validity after", validity),
     categoryTable("Change", "Change",
-      { { -1, "worse", bad }, { 0, "equal", EqualColor }, { 1, "better", BetterColor } }),
+      { { -1, "worse", DeclinedColor }, { 0, "equal", EqualColor }, { 1, "better", BetterColor } }),
     categoryTable("Grade", "Grade",
       { { static_cast<int>(Grade::None), "none", NanColor },
         { static_cast<int>(Grade::Passed), "passed", good },
@@ -211,7 +213,7 @@ std::vector<ColorMapSpec> metricColorMaps()
     {
       continue;
     }
-    // One array name serves both dimensions: the wider range.
+    // One array name serves both dimensions: uses the wider range.
     Range acceptable = info.acceptable(info.in3D ? 3 : 2);
     if (info.in2D)
     {
@@ -275,7 +277,7 @@ std::string colorMapSettings(const std::vector<ColorMapSpec>& specs)
   {
     json += metricTable(spec) + ",\n";
   }
-  // One for each metric, not for the values before and after.
+  // One color map for each metric, not for the values before and after.
   for (const ColorMapSpec& spec : specs)
   {
     const auto isMetric = [&spec](const MetricInfo& info) { return spec.array == info.name; };

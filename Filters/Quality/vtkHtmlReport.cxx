@@ -3,6 +3,8 @@
 
 #include "Blocks.h"
 #include "ColorMaps.h"
+#include "HtmlReportHistogram.h"
+#include "HtmlReportText.h"
 #include "MeshAdapter.h"
 #include "MeshPicture.h"
 #include "MetricHistogram.h"
@@ -32,141 +34,11 @@ namespace
 {
 using namespace tautline;
 
-constexpr vtkIdType MostRows = 60; // of a table
-constexpr int MostComponents = 3;  // of a column; the ids and positions of the worst have more
-constexpr int HistogramWidth = 640, HistogramHeight = 160; // pixels
-constexpr double BarWidth = 0.9;                           // of the place of a bar
-constexpr int WidthOfOne = 800, WidthOfTwo = 440;          // of pictures
-constexpr double PictureHeight = 0.75;                     // of the width
-constexpr int LegendSteps = 24;                            // colours
-constexpr int Digits = 6;                                  // of numbers
-constexpr const char* BinColor = "#8a8a8a";
-constexpr const char* BadColor = "#8c1414";
+constexpr int WidthOfOne = 800, WidthOfTwo = 440; // of pictures
+constexpr double PictureHeight = 0.75;            // of the width
+constexpr int LegendSteps = 24;                   // colors
 
-constexpr const char* Style = R"(
-body { font: 15px sans-serif; max-width: 900px; margin: 2em auto; padding: 0 1em; color: #222; }
-table { border-collapse: collapse; margin: 0.5em 0 1.5em; font-size: 13px; }
-th, td { border: 1px solid #ccc; padding: 2px 8px; text-align: right; }
-th, td:first-child { text-align: left; background: #f4f4f4; }
-div.wide { overflow-x: auto; }
-figure { display: inline-block; margin: 0 0 1em; vertical-align: top; max-width: 100%; }
-figcaption { text-align: center; font-size: 13px; }
-div.legend { display: flex; max-width: 400px; height: 14px; margin: 0 auto; }
-div.legend span { flex: 1; }
-div.ends { display: flex; justify-content: space-between; max-width: 400px; margin: 0 auto 1em;
-  font-size: 13px; }
-img, svg { max-width: 100%; }
-)";
-
-std::string escaped(const std::string& text)
-{
-  std::string html;
-  for (const char c : text)
-  {
-    switch (c)
-    {
-      case '&':
-        html += "&amp;";
-        break;
-      case '<':
-        html += "&lt;";
-        break;
-      case '>':
-        html += "&gt;";
-        break;
-      case '"':
-        html += "&quot;";
-        break;
-      default:
-        html += c;
-    }
-  }
-  return html;
-}
-
-std::string textOf(const char* text)
-{
-  return escaped(text ? text : "");
-}
-
-std::string number(double value)
-{
-  std::ostringstream text;
-  text.precision(Digits);
-  text << value;
-  return text.str();
-}
-
-std::string row(const std::vector<std::string>& cells, const char* tag)
-{
-  std::string html = "<tr>";
-  for (const std::string& cell : cells)
-  {
-    html += std::string("<") + tag + ">" + escaped(cell) + "</" + tag + ">";
-  }
-  return html + "</tr>\n";
-}
-
-/// Numbers with few digits, but whole numbers in full.
-std::string valueOf(const vtkVariant& value)
-{
-  return value.IsFloat() || value.IsDouble() ? number(value.ToDouble()) : value.ToString();
-}
-
-std::string hexOf(const Color& color)
-{
-  std::string text = "#";
-  for (const double channel : color)
-  {
-    constexpr const char* digits = "0123456789abcdef";
-    const auto byte = static_cast<int>(std::lround(255 * channel));
-    text += { digits[byte / 16], digits[byte % 16] };
-  }
-  return text;
-}
-
-std::string barsOf(const MetricHistogram& histogram)
-{
-  double most = 1;
-  for (const HistogramBar& bar : histogram.bars)
-  {
-    most = std::max(most, static_cast<double>(bar.count));
-  }
-  const double width = static_cast<double>(HistogramWidth) / histogram.bars.size();
-  std::ostringstream svg;
-  svg << "<h3>" << escaped(histogram.label) << "</h3>\n<svg width=\"" << HistogramWidth
-      << "\" height=\"" << HistogramHeight << "\" viewBox=\"0 0 " << HistogramWidth << " "
-      << HistogramHeight << "\">\n";
-  for (std::size_t i = 0; i < histogram.bars.size(); ++i)
-  {
-    const HistogramBar& bar = histogram.bars[i];
-    const double height = HistogramHeight * std::sqrt(static_cast<double>(bar.count) / most);
-    const bool inside = bar.kind == HistogramBar::Bin || bar.kind == HistogramBar::LastBin;
-    const std::string color = inside ? BinColor
-      : bar.kind == HistogramBar::Inverted
-      ? hexOf({ InvertedColor[0], InvertedColor[1], InvertedColor[2] })
-      : BadColor;
-    const int index = static_cast<int>(i);
-    svg << "<rect x=\"" << static_cast<double>(i) * width << "\" y=\"" << HistogramHeight - height
-        << "\" width=\"" << BarWidth * width << "\" height=\"" << height << "\" fill=\"" << color
-        << "\"><title>" << escaped(describeBars(histogram, index, index)) << ": " << bar.count
-        << " elements</title></rect>\n";
-  }
-  const auto isBin = [](const HistogramBar& bar)
-  { return bar.kind == HistogramBar::Bin || bar.kind == HistogramBar::LastBin; };
-  const auto first = std::find_if(histogram.bars.begin(), histogram.bars.end(), isBin);
-  const auto last = std::find_if(histogram.bars.rbegin(), histogram.bars.rend(), isBin);
-  svg << "</svg>\n";
-  if (first != histogram.bars.end())
-  {
-    svg << "<p>Grey: acceptable, " << number(first->low) << " to " << number(last->high)
-        << "; dark red: beyond; blue: inverted. The height of a bar is the square root of its "
-           "count.</p>\n";
-  }
-  return svg.str();
-}
-
-/// The colours of a metric; without a map of its own, from its smallest to its largest value.
+/// The colors of a metric; without a map of its own, from its smallest to its largest value.
 ColorMapSpec mapOf(const std::string& metric, const std::vector<vtkDataArray*>& arrays)
 {
   for (const ColorMapSpec& spec : metricColorMaps())
@@ -194,11 +66,11 @@ std::string legendOf(const ColorMapSpec& spec)
   {
     const double badness = (i + 0.5) / LegendSteps;
     html += "<span style=\"background:" +
-      hexOf(colorOf(spec, spec.good + badness * (spec.bad - spec.good))) + "\"></span>";
+      htmlColor(colorOf(spec, spec.good + badness * (spec.bad - spec.good))) + "\"></span>";
   }
-  return html + "</div>\n<div class=\"ends\"><span>" + number(spec.good) + "</span><span>" +
-    escaped(spec.title) + (spec.negativeInverts ? "; blue: inverted" : "") + "</span><span>" +
-    number(spec.bad) + "</span></div>\n";
+  return html + "</div>\n<div class=\"ends\"><span>" + htmlNumber(spec.good) + "</span><span>" +
+    escapeHtml(spec.title) + (spec.negativeInverts ? "; blue: inverted" : "") + "</span><span>" +
+    htmlNumber(spec.bad) + "</span></div>\n";
 }
 
 /// A data set with its values.
@@ -277,10 +149,15 @@ vtkHtmlReport::~vtkHtmlReport() = default;
 //------------------------------------------------------------------------------
 void vtkHtmlReport::Begin(const char* title, const char* line)
 {
-  this->Title = textOf(title);
+  this->Title = escapeHtml(title);
   this->Html.clear();
+  this->BothSides = {};
+  this->Steps.clear();
+  this->ResultTables.clear();
+  this->Result.clear();
+  this->Criteria.clear();
   this->InRows = false;
-  this->Add("<h1>" + this->Title + "</h1>\n<p>" + textOf(line) + "</p>\n");
+  this->Add("<h1>" + this->Title + "</h1>\n<p>" + escapeHtml(line) + "</p>\n");
 }
 
 //------------------------------------------------------------------------------
@@ -293,14 +170,14 @@ void vtkHtmlReport::Add(const std::string& html)
 //------------------------------------------------------------------------------
 void vtkHtmlReport::AddHeading(const char* text)
 {
-  this->Add("<h2>" + textOf(text) + "</h2>\n");
+  this->Add("<h2>" + escapeHtml(text) + "</h2>\n");
 }
 
 //------------------------------------------------------------------------------
 void vtkHtmlReport::AddText(const char* text)
 {
   std::string html;
-  for (const char c : textOf(text))
+  for (const char c : escapeHtml(text))
   {
     html += c == '\n' ? "<br>\n" : std::string(1, c);
   }
@@ -310,46 +187,19 @@ void vtkHtmlReport::AddText(const char* text)
 //------------------------------------------------------------------------------
 void vtkHtmlReport::AddRow(const char* name, const char* value)
 {
-  this->Html += this->InRows ? "" : "<table>\n";
-  this->Html += row({ name ? name : "", value ? value : "" }, "td");
+  this->Html += this->InRows ? "" : "<table class=\"texts\">\n";
+  this->Html += htmlRow({ name ? name : "", value ? value : "" }, "td");
   this->InRows = true;
 }
 
 //------------------------------------------------------------------------------
 void vtkHtmlReport::AddTable(vtkTable* table)
 {
-  if (!table || table->GetNumberOfRows() == 0)
+  const std::string html = htmlTable(table);
+  if (!html.empty())
   {
-    return;
+    this->Add(html);
   }
-  std::vector<std::string> names;
-  std::vector<vtkIdType> columns;
-  for (vtkIdType c = 0; c < table->GetNumberOfColumns(); ++c)
-  {
-    auto* values = vtkDataArray::SafeDownCast(table->GetColumn(c));
-    if (!values || values->GetNumberOfComponents() <= MostComponents)
-    {
-      columns.push_back(c);
-      names.emplace_back(table->GetColumnName(c) ? table->GetColumnName(c) : "");
-    }
-  }
-  std::string html = "<div class=\"wide\"><table>\n" + row(names, "th");
-  const vtkIdType all = table->GetNumberOfRows(), rows = std::min(MostRows, all);
-  for (vtkIdType r = 0; r < rows; ++r)
-  {
-    std::vector<std::string> cells;
-    for (const vtkIdType c : columns)
-    {
-      cells.push_back(valueOf(table->GetValue(r, c)));
-    }
-    html += row(cells, "td");
-  }
-  html += "</table></div>\n";
-  if (rows < all)
-  {
-    html += "<p>The first " + std::to_string(rows) + " of " + std::to_string(all) + " rows.</p>\n";
-  }
-  this->Add(html);
 }
 
 //------------------------------------------------------------------------------
@@ -358,7 +208,9 @@ int vtkHtmlReport::AddHistograms(vtkTable* statistics, vtkTable* histogram)
   const std::vector<MetricHistogram> histograms = histogramsOf(statistics, histogram);
   for (const MetricHistogram& one : histograms)
   {
-    this->Add(barsOf(one));
+    this->Add("<h3>" + escapeHtml(one.label) + "</h3>\n" +
+      htmlHistogram(one, histogramLimits(this->Criteria, one.metric, {}), "", 0) +
+      "<p class=\"note\">" + escapeHtml(describeColors(one)) + "</p>\n");
   }
   return static_cast<int>(histograms.size());
 }
@@ -385,7 +237,7 @@ void vtkHtmlReport::AddImage(vtkImageData* image, const char* description)
 {
   if (image && image->GetNumberOfPoints() > 0 && image->GetScalarType() == VTK_UNSIGNED_CHAR)
   {
-    this->AddPng(image, textOf(description), "");
+    this->AddPng(image, escapeHtml(description), "");
   }
 }
 
@@ -429,8 +281,8 @@ bool vtkHtmlReport::AddPictures(const std::vector<std::pair<vtkDataObject*, std:
         adapters.emplace_back(drawn.data);
         parts.push_back(partOf(adapters.back().mesh(), drawn, map));
       }
-      this->AddPng(imageOf(drawMeshes(parts, width, height)), escaped(map.title) + " on the mesh",
-        escaped(meshes[i].second));
+      this->AddPng(imageOf(drawMeshes(parts, width, height)),
+        escapeHtml(map.title) + " on the mesh", escapeHtml(meshes[i].second));
     }
     this->Add(legendOf(map));
     return true;
@@ -445,9 +297,10 @@ bool vtkHtmlReport::AddPictures(const std::vector<std::pair<vtkDataObject*, std:
 //------------------------------------------------------------------------------
 std::string vtkHtmlReport::GetHtml() const
 {
-  return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>" +
-    this->Title + "</title>\n<style>" + Style + "</style>\n</head>\n<body>\n" + this->Html +
-    (this->InRows ? "</table>\n" : "") + "</body>\n</html>\n";
+  return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+         "<meta name=\"viewport\" content=\"width=device-width\">\n<title>" +
+    this->Title + "</title>\n<style>" + HtmlReportStyle + "</style>\n</head>\n<body>\n" +
+    this->Html + (this->InRows ? "</table>\n" : "") + "</body>\n</html>\n";
 }
 
 //------------------------------------------------------------------------------

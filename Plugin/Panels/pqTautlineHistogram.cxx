@@ -10,12 +10,16 @@
 #include "pqPipelineSource.h"
 #include "pqSelectionManager.h"
 #include "pqServerManagerModel.h"
+#include "pqSettings.h"
 
 #include "vtkPVDataInformation.h"
 #include "vtkSMPropertyGroup.h"
+#include "vtkSMPropertyHelper.h"
+#include "vtkSMProxy.h"
 #include "vtkTable.h"
 
 #include <QComboBox>
+#include <QElapsedTimer>
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QSignalBlocker>
@@ -25,6 +29,7 @@
 #include <QVBoxLayout>
 
 #include <algorithm>
+#include <initializer_list>
 
 namespace
 {
@@ -33,7 +38,23 @@ enum Combinations
   AllConditions,
   AnyCondition
 };
-constexpr int MostBins = 100000; // of the property
+enum Scales
+{
+  Logarithmic,
+  Linear
+};
+constexpr int MostBins = 100000;     // of the property
+constexpr int ShortestPause = 40;    // milliseconds between two selections of a drag
+constexpr int PauseOverDuration = 2; // of a selection
+constexpr const char* ScaleSetting = "Tautline/HistogramScale";
+
+/// The criteria of the last execution; "" of proxies without them.
+std::string criteriaOf(vtkSMProxy* proxy)
+{
+  const char* text =
+    proxy->GetProperty("Criteria") ? vtkSMPropertyHelper(proxy, "Criteria").GetAsString() : nullptr;
+  return text ? text : "";
+}
 }
 
 //------------------------------------------------------------------------------
@@ -42,6 +63,9 @@ pqTautlineHistogram::pqTautlineHistogram(
   : Superclass(smproxy, smgroup, parentObject)
   , Metric(new QComboBox(this))
   , Plot(new tautline::HistogramPlot(this))
+  , Height(new QLabel(this))
+  , Scale(new QComboBox(this))
+  , Colors(new QLabel(this))
   , Combination(new QComboBox(this))
   , Conditions(new QLabel(this))
   , Count(new QLabel(this))
@@ -57,6 +81,20 @@ pqTautlineHistogram::pqTautlineHistogram(
   {
     box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
   }
+  this->Scale->setObjectName("Scale");
+  this->Scale->addItems({ "logarithmic", "linear" });
+  this->Scale->setToolTip("The axis of the numbers of elements. A logarithmic one shows a few "
+                          "elements next to many.");
+  this->Scale->setCurrentIndex(pqApplicationCore::instance()
+                                 ->settings()
+                                 ->value(ScaleSetting, static_cast<int>(Logarithmic))
+                                 .toInt() == Linear
+      ? Linear
+      : Logarithmic);
+  this->Height->setText("Bar height: number of elements, axis");
+  this->Height->setWordWrap(true);
+  this->Colors->setObjectName("Colors");
+  this->Colors->setWordWrap(true);
   this->Count->setWordWrap(true);
   this->Combination->setObjectName("Combination");
   this->Combination->addItems({ "all conditions (AND)", "any condition (OR)" });
@@ -82,6 +120,9 @@ pqTautlineHistogram::pqTautlineHistogram(
   binsRow->addWidget(new QLabel("Histogram Bins", this->Bins));
   binsRow->addWidget(bins, 1);
 
+  auto* heightRow = new QHBoxLayout;
+  heightRow->addWidget(this->Height, 1);
+  heightRow->addWidget(this->Scale);
   auto* bottom = new QHBoxLayout;
   bottom->addWidget(this->Count, 1);
   bottom->addWidget(this->Clear);
@@ -89,6 +130,8 @@ pqTautlineHistogram::pqTautlineHistogram(
   layout->setContentsMargins(0, 0, 0, 0);
   layout->addWidget(this->Metric);
   layout->addWidget(this->Plot);
+  layout->addLayout(heightRow);
+  layout->addWidget(this->Colors);
   layout->addWidget(this->Combination);
   layout->addWidget(this->Conditions);
   layout->addLayout(bottom);
@@ -101,10 +144,16 @@ pqTautlineHistogram::pqTautlineHistogram(
     &pqSelectionManager::selectionChanged, this, &pqTautlineHistogram::selectionChanged);
   const auto changed = QOverload<int>::of(&QComboBox::currentIndexChanged);
   QObject::connect(this->Metric, changed, this, &pqTautlineHistogram::metricChanged);
-  QObject::connect(this->Combination, changed, this, &pqTautlineHistogram::select);
+  QObject::connect(this->Combination, changed, this, &pqTautlineHistogram::selectElements);
   QObject::connect(
     this->Plot, &tautline::HistogramPlot::chosen, this, &pqTautlineHistogram::choose);
+  QObject::connect(this->Plot, &tautline::HistogramPlot::dragged, this, &pqTautlineHistogram::drag);
+  QObject::connect(this->Scale, changed, this, &pqTautlineHistogram::scaleChanged);
+  this->Pause.setSingleShot(true);
+  this->Pause.setInterval(ShortestPause);
+  QObject::connect(&this->Pause, &QTimer::timeout, this, &pqTautlineHistogram::selectElements);
   QObject::connect(this->Clear, &QToolButton::clicked, this, &pqTautlineHistogram::clear);
+  this->scaleChanged();
   this->refresh();
   // A filter that is being made has the state of one that was applied; fetching would execute it.
   this->Source = model->findItem<pqPipelineSource*>(smproxy);
@@ -134,6 +183,7 @@ void pqTautlineHistogram::dataUpdated(pqPipelineSource* source)
 //------------------------------------------------------------------------------
 void pqTautlineHistogram::refresh()
 {
+  this->Pause.stop();
   this->Histograms.clear();
   this->Choices.clear();
   if (this->Source)
@@ -175,24 +225,65 @@ void pqTautlineHistogram::metricChanged()
   const tautline::MetricHistogram* histogram = this->shown();
   const auto choice = histogram ? this->Choices.find(histogram->metric) : this->Choices.end();
   const bool chosen = choice != this->Choices.end();
-  this->Plot->show(histogram ? *histogram : tautline::MetricHistogram(),
+  const auto limits = histogram
+    ? tautline::histogramLimits(criteriaOf(this->proxy()), histogram->metric, {})
+    : std::vector<tautline::HistogramLimit>();
+  this->Plot->show(histogram ? *histogram : tautline::MetricHistogram(), limits,
     chosen ? choice->second.first : -1, chosen ? choice->second.last : -1);
+  this->Colors->setText(
+    histogram ? QString::fromStdString(tautline::describeColors(*histogram)) : QString());
+  for (QWidget* widget :
+    std::initializer_list<QWidget*>{ this->Colors, this->Height, this->Scale, this->Clear })
+  {
+    widget->setVisible(histogram);
+  }
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineHistogram::scaleChanged()
+{
+  const int scale = this->Scale->currentIndex();
+  pqApplicationCore::instance()->settings()->setValue(ScaleSetting, scale);
+  this->Plot->setScale(
+    scale == Linear ? tautline::CountScale::Linear : tautline::CountScale::Logarithmic);
+}
+
+//------------------------------------------------------------------------------
+bool pqTautlineHistogram::setChoice(int first, int last)
+{
+  const tautline::MetricHistogram* histogram = this->shown();
+  if (histogram)
+  {
+    this->Choices.erase(histogram->metric);
+    if (first >= 0)
+    {
+      this->Choices[histogram->metric] = { first, last };
+    }
+  }
+  return histogram;
 }
 
 //------------------------------------------------------------------------------
 void pqTautlineHistogram::choose(int first, int last)
 {
-  const tautline::MetricHistogram* histogram = this->shown();
-  if (!histogram)
+  if (this->setChoice(first, last))
   {
-    return;
+    this->selectElements();
   }
-  this->Choices.erase(histogram->metric);
-  if (first >= 0)
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineHistogram::drag(int first, int last)
+{
+  // The selection follows with pauses, in which the range is drawn.
+  if (this->setChoice(first, last))
   {
-    this->Choices[histogram->metric] = { first, last };
+    this->showConditions();
+    if (!this->Pause.isActive())
+    {
+      this->Pause.start();
+    }
   }
-  this->select();
 }
 
 //------------------------------------------------------------------------------
@@ -200,12 +291,13 @@ void pqTautlineHistogram::clear()
 {
   this->Choices.clear();
   this->metricChanged();
-  this->select();
+  this->selectElements();
 }
 
 //------------------------------------------------------------------------------
-void pqTautlineHistogram::select()
+void pqTautlineHistogram::selectElements()
 {
+  this->Pause.stop();
   if (!this->Source)
   {
     return;
@@ -220,10 +312,14 @@ void pqTautlineHistogram::select()
         tautline::conditionOf(histogram, choice->second.first, choice->second.last));
     }
   }
+  QElapsedTimer duration;
+  duration.start();
   this->Selecting = true;
   const vtkTypeInt64 selected = tautline::selectWhere(
     this->Source->getOutputPort(0), conditions, this->Combination->currentIndex() == AllConditions);
   this->Selecting = false;
+  this->Pause.setInterval(
+    std::max(ShortestPause, PauseOverDuration * static_cast<int>(duration.elapsed())));
   this->describe(selected);
 }
 
@@ -240,7 +336,7 @@ void pqTautlineHistogram::selectionChanged(pqOutputPort*)
 }
 
 //------------------------------------------------------------------------------
-void pqTautlineHistogram::describe(vtkTypeInt64 selected)
+QStringList pqTautlineHistogram::conditions() const
 {
   QStringList conditions;
   for (const tautline::MetricHistogram& histogram : this->Histograms)
@@ -253,12 +349,25 @@ void pqTautlineHistogram::describe(vtkTypeInt64 selected)
       conditions << QString::fromStdString(histogram.metric + " " + text);
     }
   }
+  return conditions;
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineHistogram::showConditions()
+{
+  const QStringList conditions = this->conditions();
   const bool all = this->Combination->currentIndex() == AllConditions;
   this->Conditions->setText(conditions.isEmpty()
       ? this->Histograms.empty() ? "" : "Drag over the bars to select their elements."
       : conditions.join(all ? " and " : " or "));
   this->Clear->setEnabled(!conditions.isEmpty());
-  if (conditions.isEmpty())
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineHistogram::describe(vtkTypeInt64 selected)
+{
+  this->showConditions();
+  if (this->Choices.empty())
   {
     this->Count->clear();
     return;

@@ -4,10 +4,12 @@
  * @brief The quality histogram of Element Quality, in which ranges are chosen to select elements.
  *
  * A combo box chooses the metric. Its histogram has bins over the acceptable range, a bar for the
- * elements beyond it and one for the inverted ones. Dragging over bars selects the cells in the
- * views, as a selection that Extract Selection and Find Data work on. Each metric can have one
- * range; cells are selected that are in all of them, or in any. The number of cells selected and
- * their share are shown; the server counts them.
+ * elements beyond it and one for the inverted ones, in the colors of the mesh; dashed lines are the
+ * limits of the criteria. Dragging over bars selects the cells in the views, as a selection that
+ * Extract Selection and Find Data work on; the ends of the range can then be dragged, and the
+ * selection follows. Each metric can have one range; cells are selected that are in all of them, or
+ * in any. The number of cells selected and their fraction are shown; the server counts them. The
+ * axis of counts is linear or logarithmic, which is remembered.
  *
  * In the XML of a proxy: `panel_widget="tautline_histogram"` on the group of the property
  * HistogramBins. The proxy has the outputs Statistics and Histogram, see vtkElementQuality.
@@ -19,6 +21,9 @@
 #include "pqPropertyGroupWidget.h"
 
 #include "HistogramBars.h"
+
+#include <QStringList>
+#include <QTimer>
 
 #include <map>
 
@@ -49,7 +54,9 @@ private Q_SLOTS:
   void dataUpdated(pqPipelineSource* source);
   void refresh();
   void metricChanged();
+  void scaleChanged();
   void choose(int first, int last);
+  void drag(int first, int last);
   void clear();
   void selectionChanged(pqOutputPort* port);
 
@@ -61,16 +68,24 @@ private:
     int last;
   };
   const tautline::MetricHistogram* shown() const;
-  void select();
+  /// The choice of the metric shown; false without a metric.
+  bool setChoice(int first, int last);
+  QStringList conditions() const;
+  void showConditions();
+  void selectElements(); // not select(), which ParaView calls for each widget of a panel
   void describe(vtkTypeInt64 selected);
 
   pqPipelineSource* Source = nullptr;
   std::vector<tautline::MetricHistogram> Histograms;
   std::map<std::string, Choice> Choices; ///< by metric
   bool Selecting = false;
+  QTimer Pause; ///< between two selections while a range is dragged
 
   QComboBox* Metric;
   tautline::HistogramPlot* Plot;
+  QLabel* Height;
+  QComboBox* Scale;
+  QLabel* Colors;
   QComboBox* Combination;
   QLabel* Conditions;
   QLabel* Count;

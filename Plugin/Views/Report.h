@@ -16,15 +16,19 @@ namespace tautline
 {
 
 /**
- * @brief The report: name, date, mesh, settings, summary, histograms, the filter's tables and a
- * picture.
+ * @brief The report of a filter, see vtkHtmlReport: that of `tautline report` for the same meshes,
+ * with the filters and their settings from the reader on.
  *
- * The settings are those of the filter's panel. The tables are the outputs that are tables: of
- * Element Quality the statistics, of Optimize Mesh the quality before and after. Of long tables the
- * first rows are in the report, and their number.
+ * Its mesh is measured by Element Quality with the default metric, unless the filter is Element
+ * Quality itself, whose result is taken. The mesh before is the input of the filter, if its mesh
+ * differs; for Element Quality, the input of the last filter before it that has changed the mesh.
+ * Settings are the properties of the panels that differ from their default. A history and other
+ * tables of the filter follow.
+ *
+ * The meshes are brought to the client, which draws them.
  * @param source a filter that was executed
- * @param view what it shows is the picture; if it draws no meshes, another one that does. May be
- * null
+ * @param view what it shows is added for filters other than Element Quality that leave the mesh as
+ * it is, such as Solve PDE; if it draws no meshes, another one that does. May be null
  */
 QString reportOf(pqPipelineSource* source, pqView* view);
 

@@ -3,106 +3,78 @@
 
 from __future__ import annotations
 
+import inspect
+import os
 from datetime import datetime, timezone
+from importlib import import_module
 from os import PathLike
 from typing import Any
 
-from vtkmodules.vtkCommonDataModel import vtkCompositeDataSet, vtkDataSet
-
 from . import _vtk
-from ._errors import Error, Messages, run
+from ._errors import Messages
 
-_TABLES = (1, "Statistics"), (2, "Distribution"), (3, "Angles"), (6, "Criteria")  # output ports
-_COMPARED = (
-    ("worst", "Worst"), ("mean", "Mean"), ("minimum", "Minimum"), ("maximum", "Maximum"),
-    ("unacceptable", "OutsideAcceptable"), ("inverted", "Inverted"), ("degenerate", "Degenerate"),
-)  # fmt: skip
+#: The labels in ParaView's panel of settings that are not their names.
+_LABELS = {
+    "target": "Target Type", "size": "Size Array", "tensor": "Tensor Array", "checks": "Solver Checks",
+    "face_output": "Faces to Show", "face_convention": "Face Centers",
+}  # fmt: skip
+_LONGEST = 200  # of a value, such as criteria in JSON
 
 
 def html_report(
     measured: Any, name: Any, settings: dict[str, Any], before: Any = None, title: str | None = None
 ) -> str:
-    """The report of a filter of vtkElementQuality that was executed.
+    """The report of a filter of vtkElementQuality that was executed: that of Save Report in ParaView.
 
     name: what was measured: a file name, else the class of the data is the name.
-    settings: what was chosen, by name; None and "" are left out.
+    settings: what was chosen, by name; defaults are left out. "before" is the name of the file before.
     before: the filter of the mesh before, with the same metrics.
     title: the default is the name.
     """
     report = _vtk.vtkHtmlReport()
     messages = Messages(report)
-    label = str(name) if isinstance(name, (str, PathLike)) else measured.GetOutputDataObject(0).GetClassName()
+    file = os.path.basename(os.fspath(name)) if isinstance(name, (str, PathLike)) else ""
     now = datetime.now(timezone.utc).isoformat(" ", "seconds")
-    report.Begin(title or label, f"Element Quality, Tautline. {now}")
-    report.AddHeading("Mesh")
-    _add_mesh(report, measured.GetOutputDataObject(0))
-    report.AddHeading("Result")
-    report.AddText(measured.GetSummary())
-    metrics = _metrics(measured)
-    shown = metrics[0]
-    if before is None:
-        report.AddMeshPicture(measured.GetOutputDataObject(0), shown)
-    else:
-        _add_comparison(report, before, measured, metrics)
-        report.AddMeshPictures(before.GetOutputDataObject(0), measured.GetOutputDataObject(0), shown)
-        report.AddHeading("Histogram before")
-        report.AddHistograms(before.GetStatistics(), before.GetHistogram())
-    report.AddHeading("Histogram" if before is None else "Histogram after")
-    report.AddHistograms(measured.GetStatistics(), measured.GetHistogram())
-    for port, heading in _TABLES:
-        table = measured.GetOutputDataObject(port)
-        if table.GetNumberOfRows():
-            report.AddHeading(heading)
-            report.AddTable(table)
-    report.AddHeading("Settings")
-    for key, value in settings.items():
-        if value is not None and value != "":
-            report.AddRow(key.replace("_", " "), _text(value))
+    report.Begin(title or file or measured.GetOutputDataObject(0).GetClassName(), f"Element Quality, Tautline. {now}")
+    report.SetFile(report.AFTER, file)
+    file_before = settings.get("before")
+    if isinstance(file_before, (str, PathLike)):
+        report.SetFile(report.BEFORE, os.path.basename(os.fspath(file_before)))
+    report.AddStep("Element Quality", "\n".join(_changed(settings, measured)))
+    if before is not None:
+        report.SetQuality(report.BEFORE, before)
+    report.SetQuality(report.AFTER, measured)
+    report.AddSections()
     messages.raise_errors()
     return str(report.GetHtml())
 
 
-def _metrics(measured: Any) -> list[str]:
-    names = measured.GetStatistics().GetColumnByName("Metric")
-    return [names.GetValue(row) for row in range(names.GetNumberOfValues())]
+def _changed(settings: dict[str, Any], measured: Any) -> list[str]:
+    """The settings that are not the default, "Label: value" as in ParaView's panel."""
+    table = measured.GetStatistics()
+    columns = table.GetColumnByName("Metric"), table.GetColumnByName("Label")
+    labels = {columns[0].GetValue(row): columns[1].GetValue(row) for row in range(table.GetNumberOfRows())}
+    defaults = inspect.signature(import_module("tautline._quality").quality).parameters
+    lines = []
+    for key, value in settings.items():
+        names = _texts(value)
+        if key == "before" or names == [""] or (key in defaults and names == _texts(defaults[key].default)):
+            continue
+        shown = ", ".join(labels.get(name, name) for name in names) if key == "metrics" else ", ".join(names)
+        shown = shown if len(shown) <= _LONGEST else shown[:_LONGEST] + "..."
+        lines.append(f"{_LABELS.get(key, key.replace('_', ' ').title())}: {shown}")
+    return lines
 
 
-def _add_mesh(report: Any, mesh: Any) -> None:
-    """Type, size and extent, as in ParaView's report."""
-    bounds = [0.0] * 6
-    mesh.GetBounds(bounds)
-    report.AddRow("Type", mesh.GetClassName())
-    report.AddRow("Points", str(mesh.GetNumberOfPoints()))
-    report.AddRow("Cells", str(mesh.GetNumberOfCells()))
-    for axis, letter in enumerate("xyz"):
-        low, high = bounds[2 * axis : 2 * axis + 2]
-        report.AddRow(letter, f"{low:g} to {high:g}" if low <= high else "empty")
-
-
-def _add_comparison(report: Any, before: Any, after: Any, metrics: list[str]) -> None:
-    """The statistics before and after and, of meshes with the same cells, the elements that changed."""
-    report.AddHeading("Before and after")
-    for row, metric in enumerate(metrics):
-        for label, column in _COMPARED:
-            values = [filter_.GetStatistics().GetValueByName(row, column).ToDouble() for filter_ in (before, after)]
-            report.AddRow(f"{metric}, {label}", " to ".join(f"{value:.6g}" for value in values))
-    inputs = before.GetInputDataObject(0, 0), after.GetInputDataObject(0, 0)
-    compare = _vtk.vtkMeshComparison()
-    for metric in metrics:
-        compare.AddMetricByName(metric)
-    for port, mesh in enumerate(inputs):
-        compare.SetInputDataObject(port, mesh)
-    try:
-        run(compare)
-    except Error:  # of other cells: its connectivity was changed, which a report can be of, too
-        report.AddText("The meshes have different cells: there is no comparison element by element.")
-        return
-    report.AddTable(compare.GetOutputDataObject(1))
+def _texts(value: Any) -> list[str]:
+    return list(map(_text, value)) if isinstance(value, (list, tuple)) else [_text(value)]
 
 
 def _text(value: Any) -> str:
-    if isinstance(value, (list, tuple)):
-        return ", ".join(map(str, value))
-    if isinstance(value, (vtkDataSet, vtkCompositeDataSet)):
-        return str(value.GetClassName())
-    return str(value)
+    if value is None:
+        return ""
+    if isinstance(value, bool):
+        return "on" if value else "off"
+    if isinstance(value, float):
+        return f"{value:g}"
+    return str(value.GetClassName()) if hasattr(value, "GetClassName") else str(value)

@@ -38,7 +38,7 @@ class ReportResult(str):
     quality : QualityResult
         The result of quality() for the mesh.
     before : QualityResult | None
-        That for the mesh before it was changed, or None.
+        The same for the mesh before it was changed, or None.
     """
 
     html: str
@@ -85,8 +85,9 @@ def report(
 ) -> ReportResult:
     """Report the quality of a mesh as one HTML file that needs no other file.
 
-    It has what Save Report in ParaView's panel has: mesh, result, picture, histogram, tables and settings. The picture
-    is coloured by the first metric, and inverted elements inside are visible; it needs no display.
+    It is the report of Save Report in ParaView: source, settings that are not the default, mesh, result, picture,
+    histogram and tables. The picture is colored by the first metric, and inverted elements inside are visible; it needs
+    no display.
 
     Parameters
     ----------
@@ -95,8 +96,8 @@ def report(
     file : str or path, optional
         The HTML file to write; the default writes none.
     before : Mesh, optional
-        The mesh before it was changed: pictures, histograms and statistics of both are in the report and, if the cells
-        are the same, how many elements became better and worse.
+        The mesh before it was changed: the report has pictures, histograms and tables of both meshes and, if the cells
+        are the same, the numbers of elements that became better and worse.
     metrics : Metrics, default ("imr",)
         See quality().
     criteria : str or path or dict[str, Any], optional
@@ -121,7 +122,7 @@ def report(
     Raises
     ------
     Error
-        For wrong arguments, for meshes that quality() refuses and if the file cannot be written.
+        For wrong arguments, for meshes that quality() rejects and if the file cannot be written.
 
     Examples
     --------
@@ -166,7 +167,7 @@ def add_commands(commands: Any) -> None:
     parser = _commands.add_command(
         commands, "report", _run, "write the quality of a mesh as one HTML file",
         example="part.vtu -o report.html --criteria fem",
-        details="It has what Save Report in ParaView has: pictures, histograms, tables and settings.",
+        details="It is the report of Save Report in ParaView: pictures, histograms, tables and changed settings.",
     )
     _commands.add_mesh(parser)
     parser.add_argument("-o", "--out", "--output", dest="report", metavar="FILE", required=True, help="the HTML file")

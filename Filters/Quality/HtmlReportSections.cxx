@@ -1,0 +1,402 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// The sections of vtkHtmlReport.
+#include "Blocks.h"
+#include "HtmlReportHistogram.h"
+#include "HtmlReportText.h"
+#include "tautline/Quality/Metrics.h"
+#include "vtkElementQuality.h"
+#include "vtkHtmlReport.h"
+#include "vtkMeshComparison.h"
+
+#include "vtkBoundingBox.h"
+#include "vtkCallbackCommand.h"
+#include "vtkCommand.h"
+#include "vtkDataSet.h"
+#include "vtkExecutive.h"
+#include "vtkNew.h"
+#include "vtkTable.h"
+#include "vtkVariant.h"
+
+#include <algorithm>
+#include <iterator>
+#include <set>
+
+namespace
+{
+using namespace tautline;
+
+/// The outputs of vtkElementQuality that a report has, with their ports.
+struct QualityOutput
+{
+  int port;
+  const char* name;
+};
+constexpr QualityOutput QualityOutputs[] = { { 0, "Mesh" }, { 1, "Statistics" },
+  { 2, "Distribution" }, { 3, "Angles" }, { 5, "Histogram" }, { 6, "Criteria" },
+  { 9, "MeshChecks" } };
+/// The tables after the statistics, with their headings.
+constexpr const char* QualityTables[][2] = { { "Distribution", "Distribution" },
+  { "Angles", "Angles" }, { "Criteria", "Criteria" }, { "MeshChecks", "Mesh checks" } };
+constexpr const char* SideNames[] = { "before", "after" };
+constexpr const char* MetricColumn = "Metric";
+
+/// Type, size and extent of a mesh, as texts.
+std::vector<std::string> factsOf(vtkDataObject* mesh)
+{
+  vtkIdType points = 0, cells = 0;
+  vtkBoundingBox box;
+  forEachLeaf(mesh,
+    [&](unsigned int, vtkDataSet* data)
+    {
+      points += data->GetNumberOfPoints();
+      cells += data->GetNumberOfCells();
+      if (data->GetNumberOfPoints() > 0)
+      {
+        box.AddBounds(data->GetBounds());
+      }
+    });
+  std::vector<std::string> facts = { readableName(std::string(mesh->GetClassName()).substr(3)),
+    std::to_string(points), std::to_string(cells) };
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    facts.push_back(box.IsValid()
+        ? htmlNumber(box.GetMinPoint()[axis]) + " to " + htmlNumber(box.GetMaxPoint()[axis])
+        : "empty");
+  }
+  return facts;
+}
+
+std::vector<int> cellTypesOf(vtkDataObject* mesh)
+{
+  std::set<int> types;
+  forEachLeaf(mesh,
+    [&](unsigned int, vtkDataSet* data)
+    {
+      for (vtkIdType cell = 0; cell < data->GetNumberOfCells(); ++cell)
+      {
+        types.insert(data->GetCellType(cell));
+      }
+    });
+  return { types.begin(), types.end() };
+}
+
+vtkIdType fullest(const MetricHistogram& histogram)
+{
+  vtkIdType most = 0;
+  for (const HistogramBar& bar : histogram.bars)
+  {
+    most = std::max(most, bar.count);
+  }
+  return most;
+}
+
+void ignoreErrors(vtkObject* object)
+{
+  vtkNew<vtkCallbackCommand> ignored;
+  ignored->SetCallback([](vtkObject*, unsigned long, void*, void*) {});
+  object->AddObserver(vtkCommand::ErrorEvent, ignored);
+}
+
+/// The columns of the table of vtkMeshComparison that the statistics do not have.
+vtkSmartPointer<vtkTable> changesIn(vtkTable* comparison)
+{
+  auto changes = vtkSmartPointer<vtkTable>::New();
+  for (const char* column : { MetricColumn, "Better", "Worse", "Equal", "LargestDisplacement" })
+  {
+    if (vtkAbstractArray* values = comparison->GetColumnByName(column))
+    {
+      changes->AddColumn(values);
+    }
+  }
+  return changes;
+}
+}
+
+//------------------------------------------------------------------------------
+void vtkHtmlReport::SetFile(int side, const char* name)
+{
+  this->BothSides.at(side).File = name ? name : "";
+}
+
+//------------------------------------------------------------------------------
+void vtkHtmlReport::AddStep(const char* name, const char* settings)
+{
+  this->Steps.emplace_back(name ? name : "", settings ? settings : "");
+}
+
+//------------------------------------------------------------------------------
+void vtkHtmlReport::SetResult(const char* text)
+{
+  this->Result = text ? text : "";
+}
+
+//------------------------------------------------------------------------------
+void vtkHtmlReport::SetQuality(int side, vtkElementQuality* measured)
+{
+  for (const QualityOutput& output : QualityOutputs)
+  {
+    this->SetQualityOutput(side, output.name, measured->GetOutputDataObject(output.port));
+  }
+  this->SetQualitySummary(side, measured->GetSummary());
+  this->SetCriteria(measured->GetCriteria());
+}
+
+//------------------------------------------------------------------------------
+void vtkHtmlReport::SetQualityOutput(int side, const char* output, vtkDataObject* data)
+{
+  this->BothSides.at(side).Outputs[output ? output : ""] = data;
+}
+
+//------------------------------------------------------------------------------
+void vtkHtmlReport::SetQualitySummary(int side, const char* text)
+{
+  this->BothSides.at(side).Summary = text ? text : "";
+}
+
+//------------------------------------------------------------------------------
+void vtkHtmlReport::SetCriteria(const char* criteria)
+{
+  this->Criteria = criteria ? criteria : "";
+}
+
+//------------------------------------------------------------------------------
+void vtkHtmlReport::AddResultTable(const char* name, vtkTable* table)
+{
+  this->ResultTables.emplace_back(name ? name : "", table);
+}
+
+//------------------------------------------------------------------------------
+vtkDataObject* vtkHtmlReport::Output(int side, const char* name) const
+{
+  const auto& outputs = this->BothSides.at(side).Outputs;
+  const auto found = outputs.find(name);
+  return found == outputs.end() ? nullptr : found->second.Get();
+}
+
+//------------------------------------------------------------------------------
+vtkTable* vtkHtmlReport::Table(int side, const char* name) const
+{
+  vtkTable* table = vtkTable::SafeDownCast(this->Output(side, name));
+  return table && table->GetNumberOfRows() > 0 ? table : nullptr;
+}
+
+//------------------------------------------------------------------------------
+bool vtkHtmlReport::IsComparison() const
+{
+  vtkTable* before = this->Table(BEFORE, "Statistics");
+  vtkTable* after = this->Table(AFTER, "Statistics");
+  return this->Output(BEFORE, "Mesh") && before && after &&
+    before->GetNumberOfRows() == after->GetNumberOfRows();
+}
+
+//------------------------------------------------------------------------------
+bool vtkHtmlReport::AddSections()
+{
+  this->AddSource();
+  this->AddPipeline();
+  const bool measured = this->Output(AFTER, "Mesh") && this->Table(AFTER, "Statistics");
+  if (measured)
+  {
+    this->AddMeshFacts();
+  }
+  if (measured || !this->Result.empty())
+  {
+    this->AddHeading("Result");
+  }
+  for (const std::string& text : { this->Result, this->BothSides[AFTER].Summary })
+  {
+    if (!text.empty())
+    {
+      this->AddText(text.c_str());
+    }
+  }
+  bool drawn = true;
+  if (measured)
+  {
+    drawn = this->AddQualityPictures();
+    this->AddQualityHistograms();
+    this->AddTables("Statistics", "Statistics");
+    for (const auto& table : QualityTables)
+    {
+      this->AddTables(table[0], table[1]);
+    }
+  }
+  for (const auto& [name, table] : this->ResultTables)
+  {
+    if (table && table->GetNumberOfRows() > 0)
+    {
+      this->AddHeading(name.c_str());
+      this->AddTable(table);
+    }
+  }
+  return drawn;
+}
+
+//------------------------------------------------------------------------------
+void vtkHtmlReport::AddSource()
+{
+  if (this->BothSides[BEFORE].File.empty() && this->BothSides[AFTER].File.empty())
+  {
+    return;
+  }
+  this->AddHeading("Source");
+  for (const int side : { AFTER, BEFORE })
+  {
+    if (!this->BothSides.at(side).File.empty())
+    {
+      this->AddRow(side == AFTER ? "File" : "File before", this->BothSides.at(side).File.c_str());
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkHtmlReport::AddPipeline()
+{
+  if (!this->Steps.empty())
+  {
+    this->AddHeading("Pipeline");
+  }
+  for (const auto& [name, settings] : this->Steps)
+  {
+    this->AddRow(name.c_str(), settings.empty() ? "default settings" : settings.c_str());
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkHtmlReport::AddMeshFacts()
+{
+  constexpr const char* names[] = { "Type", "Points", "Cells", "x", "y", "z" };
+  const bool two = this->IsComparison();
+  std::vector<std::vector<std::string>> facts;
+  for (const int side : { BEFORE, AFTER })
+  {
+    if (side == AFTER || two)
+    {
+      facts.push_back(factsOf(this->Output(side, "Mesh")));
+    }
+  }
+  this->AddHeading("Mesh");
+  std::string html = "<div class=\"wide\"><table>\n";
+  html += two ? htmlRow({ "", "Before", "After" }, "th") : "";
+  for (std::size_t i = 0; i < std::size(names); ++i)
+  {
+    std::vector<std::string> cells = { names[i] };
+    for (const auto& one : facts)
+    {
+      cells.push_back(one[i]);
+    }
+    html += htmlRow(cells, "td");
+  }
+  this->Add(html + "</table></div>\n");
+}
+
+//------------------------------------------------------------------------------
+bool vtkHtmlReport::AddQualityPictures()
+{
+  const bool two = this->IsComparison();
+  this->AddHeading(two ? "Before and after" : "Picture");
+  const std::string metric =
+    this->Table(AFTER, "Statistics")->GetValueByName(0, MetricColumn).ToString();
+  vtkDataObject* after = this->Output(AFTER, "Mesh");
+  if (!two)
+  {
+    return this->AddMeshPicture(after, metric.c_str());
+  }
+  const bool drawn = this->AddMeshPictures(this->Output(BEFORE, "Mesh"), after, metric.c_str());
+  this->AddChanges();
+  return drawn;
+}
+
+//------------------------------------------------------------------------------
+void vtkHtmlReport::AddChanges()
+{
+  vtkNew<vtkMeshComparison> comparison;
+  ignoreErrors(comparison);
+  ignoreErrors(comparison->GetExecutive());
+  vtkTable* statistics = this->Table(AFTER, "Statistics");
+  bool any = false;
+  for (vtkIdType row = 0; row < statistics->GetNumberOfRows(); ++row)
+  {
+    const std::string metric = statistics->GetValueByName(row, MetricColumn).ToString();
+    const MetricInfo* info = findMetric(metric);
+    if (info && info->family != MetricFamily::Faces)
+    {
+      comparison->AddMetricByName(metric.c_str());
+      any = true;
+    }
+  }
+  if (!any)
+  {
+    return;
+  }
+  comparison->SetInputDataObject(0, this->Output(BEFORE, "Mesh"));
+  comparison->SetInputDataObject(1, this->Output(AFTER, "Mesh"));
+  comparison->Update();
+  vtkTable* table = vtkTable::SafeDownCast(comparison->GetOutputDataObject(1));
+  if (table && table->GetNumberOfRows() > 0)
+  {
+    this->AddTable(changesIn(table));
+  }
+  else
+  {
+    // The connectivity was changed.
+    this->AddText("The meshes have different cells: there is no comparison element by element.");
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkHtmlReport::AddQualityHistograms()
+{
+  std::array<std::vector<MetricHistogram>, 2> histograms;
+  for (const int side : { BEFORE, AFTER })
+  {
+    histograms.at(side) =
+      histogramsOf(this->Table(side, "Statistics"), this->Table(side, "Histogram"));
+  }
+  if (histograms[AFTER].empty())
+  {
+    return;
+  }
+  const std::vector<int> types =
+    this->Criteria.empty() ? std::vector<int>() : cellTypesOf(this->Output(AFTER, "Mesh"));
+  this->AddHeading(this->IsComparison() ? "Histograms before and after" : "Histogram");
+  for (const MetricHistogram& after : histograms[AFTER])
+  {
+    const auto before = std::find_if(histograms[BEFORE].begin(), histograms[BEFORE].end(),
+      [&after](const MetricHistogram& one) { return one.metric == after.metric; });
+    const bool two = this->IsComparison() && before != histograms[BEFORE].end();
+    const auto limits = histogramLimits(this->Criteria, after.metric, types);
+    const vtkIdType most = std::max(fullest(after), two ? fullest(*before) : 0);
+    this->Add("<h3>" + escapeHtml(after.label) + "</h3>\n" +
+      (two ? htmlHistogram(*before, limits, SideNames[BEFORE], most) : "") +
+      htmlHistogram(after, limits, two ? SideNames[AFTER] : "", most) + "<p class=\"note\">" +
+      escapeHtml(describeColors(after, two ? &*before : nullptr)) + "</p>\n");
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkHtmlReport::AddTables(const char* output, const char* heading)
+{
+  vtkTable* after = this->Table(AFTER, output);
+  vtkTable* before = this->IsComparison() ? this->Table(BEFORE, output) : nullptr;
+  if (!after)
+  {
+    return;
+  }
+  if (std::string(output) == "Statistics")
+  {
+    this->AddHeading(heading);
+    this->Add(before ? htmlColumns({ before, after }, MetricColumn, { "before", "after" })
+                     : htmlColumns({ after }, MetricColumn, { "" }));
+    return;
+  }
+  for (const int side : { BEFORE, AFTER })
+  {
+    vtkTable* table = side == AFTER ? after : before;
+    if (table)
+    {
+      this->AddHeading(before ? (heading + std::string(" ") + SideNames[side]).c_str() : heading);
+      this->AddTable(table);
+    }
+  }
+}
