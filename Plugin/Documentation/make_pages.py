@@ -38,7 +38,7 @@ PAGE = """<!DOCTYPE html>
 <html>
 <head>
 <meta charset="utf-8">
-<title>{title}</title>
+<title>{title} - Tautline</title>
 <style>
 {style}</style>
 </head>

@@ -43,7 +43,7 @@ GetAnimationScene().GoToLast()
 
 
 def parts_of(script: str) -> tuple[str, str, dict[str, list[str]]]:
-    """The title, the text and the labelled lines of an example; a backslash continues a line."""
+    """The title, the text and the labeled lines of an example; a backslash continues a line."""
     title, _, rest = script.split('"""')[1].partition("\n")
     joined = CONTINUED.sub("", rest)
     lines: dict[str, list[str]] = {}

@@ -40,8 +40,8 @@ PATTERNS = {
     "mend": (r"\bmend(?:s|ed|ing)?\b", 0),
     "but for": (r"\(but\s+for\b|\bbut\s+for\s+(?:the|a|an|its|their|those|this|one|rounding)\b", 0),
     "British spelling": (
-        # Neither a part of a name or path, nor an attribute of a numpydoc section.
-        rf"\b(?<![./\"'`-])(?:{_BRITISH.replace(' ', '|')})(?![\w\"'`_(]|\.\w|-\w+\.|(?:, \w+)* : )",
+        # Neither a part of a name or path, nor a parameter, nor an attribute of a numpydoc section.
+        rf"\b(?<!@param )(?<![./\"'`-])(?:{_BRITISH.replace(' ', '|')})(?![\w\"'`_(]|\.\w|-\w+\.|(?:, \w+)* : )",
         0,
     ),
 }
