@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file QtCompatibility.h
- * @brief What differs between Qt 5 and Qt 6, in one place.
+ * @brief Differences between Qt 5 and Qt 6, in one place.
  */
 #ifndef tautline_QtCompatibility_h
 #define tautline_QtCompatibility_h
@@ -18,7 +18,7 @@ struct xcb_connection_t;
 
 namespace tautline
 {
-/// Qt's connection to the X server; null on other systems of windows.
+/// Qt's connection to the X server; null on other window systems.
 inline xcb_connection_t* xcbConnection()
 {
 #if QT_VERSION >= QT_VERSION_CHECK(6, 2, 0)

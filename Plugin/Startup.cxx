@@ -28,7 +28,7 @@ void tautlineCheckVersion()
 //------------------------------------------------------------------------------
 void tautlineInstallColorMaps()
 {
-  // A metric may be registered later; those of another session stay.
+  // A metric may be registered later; color maps from an earlier session remain.
   static int known = 0;
   const int now = vtkElementQuality::GetNumberOfKnownMetrics();
   if (now == known)

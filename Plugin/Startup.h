@@ -1,23 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Startup.h
- * @brief What the plugin does when ParaView loads it, in the GUI, in pvpython and on a server
- * alike.
+ * @brief Actions of the plugin when ParaView loads it in the GUI, in pvpython or on a server.
  */
 
 #ifndef tautline_Startup_h
 #define tautline_Startup_h
 
-/** Warns when the running ParaView is not the one the plugin was built for. */
+/** Warns if the plugin was built for a version of ParaView other than the running one. */
 void tautlineCheckVersion();
 
-/** Gives the arrays of Tautline's filters default colour maps; the user's own take precedence. */
+/** Sets default color maps for arrays of Tautline's filters; the user's maps take precedence. */
 void tautlineInstallColorMaps();
 
-/** Lets ParaView create the domain of the menus of metrics. */
+/** Registers the domain of the metric menus with ParaView. */
 void tautlineRegisterDomains();
 
-/** Lets the user stop a run of a filter that keeps its best result so far; see RunControl.h. */
+/** Enables the user to stop filters that keep their best result so far; see RunControl.h. */
 void tautlineInstallRunControl();
 
 #endif

@@ -25,7 +25,7 @@ std::string versionMismatch(const ParaViewVersion& built, const ParaViewVersion&
     return {};
   }
   return "The Tautline plugin was built for " + text(built) + " but runs in " + text(running) +
-    ". It may crash or compute nonsense: build it again with the development files of this "
+    ". It may crash or give wrong results: build it again with the development files of this "
     "ParaView.";
 }
 

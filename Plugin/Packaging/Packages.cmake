@@ -32,8 +32,8 @@ set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 
 set(version "${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE}")
 set(library "libtautline (= ${version})")
-# The classes of ParaView's VTK keep their binary interface only within one version of the package, which Debian's
-# revisions do not change: 5.11.0+dfsg-1 and -2 are the same, 5.11.1 is not.
+# The classes of ParaView's VTK are binary compatible only within one upstream version: the Debian revisions
+# 5.11.0+dfsg-1 and -2 are compatible, 5.11.1 is not.
 set(paraview)
 set(python_paraview python3-vtk9)
 if (TAUTLINE_USE_PARAVIEW)
@@ -45,7 +45,7 @@ if (TAUTLINE_USE_PARAVIEW)
   endif ()
 endif ()
 
-# What find_package(ParaView) looks for, of the release this is built on.
+# The packages that find_package(ParaView) needs on the release of this build.
 set(headers)
 file(STRINGS /etc/os-release release REGEX "^(ID|VERSION_CODENAME)=")
 string(REGEX REPLACE ".*VERSION_CODENAME=([a-z]+).*" "\\1" codename "${release}")
@@ -58,7 +58,7 @@ if (EXISTS "${requirements}")
   string(REPLACE " " ", " headers "${headers}")
 endif ()
 
-# The license as Debian's copyright files have it: indented, a point in empty lines.
+# The license in the format of Debian's copyright files: indented, with a period in empty lines.
 file(STRINGS LICENSE lines)
 set(TAUTLINE_LICENSE)
 foreach (line IN LISTS lines)
@@ -68,8 +68,8 @@ foreach (line IN LISTS lines)
   string(APPEND TAUTLINE_LICENSE " ${line}\n")
 endforeach ()
 
-# tautline_package(COMPONENT NAME SUMMARY TEXT DEPENDS): a package of one install component. The file of its name in
-# notices says what its binaries link, under which licenses: a comment, and after an empty line the licenses of parts.
+# tautline_package(COMPONENT NAME SUMMARY TEXT DEPENDS): a package of one install component. Its file in notices
+# lists the libraries that its binaries link and their licenses: a comment, an empty line, then the licenses of parts.
 function (tautline_package component name summary text depends)
   string(TOUPPER "${component}" upper)
   set("CPACK_DEBIAN_${upper}_PACKAGE_NAME" "${name}" PARENT_SCOPE)
@@ -115,9 +115,9 @@ set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA
   "${CMAKE_CURRENT_LIST_DIR}/postinst;${CMAKE_CURRENT_LIST_DIR}/prerm")
 set(CPACK_DEBIAN_DOC_PACKAGE_CONTROL_EXTRA "${CMAKE_CURRENT_LIST_DIR}/prerm") # Python compiles examples and studies
 
-# ParaView reads paraview.conf, a list of files that name plugins: on Debian 12, whose ParaView has none, beside its program.
-# Debian 13's ParaView reads its own one in its directory of libraries, and no other; its second line names a file that no
-# package of Debian has, for plugins of other packages.
+# ParaView reads paraview.conf, a list of files that name plugins. Debian 12's ParaView has no such file, so it is
+# installed beside the program. Debian 13's ParaView reads only the file in its library directory, whose second line
+# names a file for plugins of other packages; no Debian package provides it.
 if (TAUTLINE_USE_PARAVIEW AND TAUTLINE_AUTOLOAD)
   set(prefix "${CPACK_PACKAGING_INSTALL_PREFIX}")
   set(plugins "/${CMAKE_INSTALL_LIBDIR}/${PARAVIEW_PLUGIN_SUBDIR}")

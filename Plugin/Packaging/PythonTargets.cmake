@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # paraview-dev of Debian 13 and later exports its Python modules as targets whose files do not exist under these names:
-# vtkCommonCore.so is vtkCommonCore.cpython-313-x86_64-linux-gnu.so there. CMake 3.28 and later stops at such a target.
-# Where a file is missing, the targets are made here, without the places of their files, which nothing links;
-# find_package(ParaView) leaves out a list of targets that are there already.
+# vtkCommonCore.so is vtkCommonCore.cpython-313-x86_64-linux-gnu.so there. CMake 3.28 and later rejects such a target.
+# If a file is missing, the targets are created here without file locations, because nothing links them;
+# find_package(ParaView) skips a list whose targets already exist.
 function (tautline_make_python_targets directory)
   get_filename_component(prefix "${directory}/../../../.." ABSOLUTE) # of lib/ARCHITECTURE/cmake/paraview-VERSION
   file(GLOB lists "${directory}/vtk/VTKPython-targets.cmake" "${directory}/ParaViewPython*-targets.cmake")
@@ -21,7 +21,7 @@ function (tautline_make_python_targets directory)
       endforeach ()
     endforeach ()
     if (missing)
-      message(STATUS "There is no ${missing} of ${list}: making its targets")
+      message(STATUS "${missing} of ${list} does not exist: creating its targets")
       file(READ "${list}" text)
       string(FIND "${text}" "# Load information for each installed configuration" end)
       string(SUBSTRING "${text}" 0 "${end}" text)

@@ -13,13 +13,13 @@ import sys
 from pathlib import Path
 
 FOLDER = "Plugin/Changes"
-GUIDE = "README.md"  # the only file of the folder that is no fragment
+GUIDE = "README.md"  # the only file of the folder that is not a fragment
 KINDS = ("Added", "Changed", "Deprecated", "Removed", "Fixed", "Security")
 NAME = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*\.md")
 VERSION = re.compile(r"(0|[1-9]\d*)\.(0|[1-9]\d*)\.(0|[1-9]\d*)")
 LINK = re.compile(r"\]\(([^)#\s]+)[^)]*\)")
 OUTSIDE = re.compile(r"[a-z]+:")
-SECTION = re.compile(r"^## ", re.MULTILINE)  # before the first one the new section is inserted
+SECTION = re.compile(r"^## ", re.MULTILINE)  # the new section is inserted before the first one
 MAX_COLUMNS = 120
 #: File, pattern with the old text as its second group, and the new text.
 PLACES = (
@@ -31,7 +31,7 @@ PLACES = (
 
 
 def complaints(top: Path, path: Path):
-    """What is wrong with a fragment."""
+    """The errors in a fragment."""
     if not path.is_file() or not NAME.fullmatch(path.name):
         yield "is no file with a name of lowercase letters, digits and hyphens that ends with .md"
         return
@@ -58,7 +58,7 @@ def complaints(top: Path, path: Path):
 
 
 def fragments(top: Path) -> tuple[list[Path], list[str]]:
-    """The fragments in the order of their names, and what is wrong with them."""
+    """The fragments in the order of their names, and their errors."""
     paths = sorted(path for path in (top / FOLDER).iterdir() if path.name != GUIDE)
     return paths, [f"{FOLDER}/{path.name} {text}" for path in paths for text in complaints(top, path)]
 
@@ -79,7 +79,7 @@ def joined(top: Path, paths: list[Path], version: str, date: str) -> dict[Path, 
     text = log.read_text(encoding="utf-8")
     first = SECTION.search(text)
     if not first or f"\n## {version} - " in text:
-        raise ValueError(f"CHANGELOG.md has no section, or already one of {version}")
+        raise ValueError(f"CHANGELOG.md has no section, or already has one for {version}")
     texts = {log: f"{text[:first.start()]}{section_of(paths, version, date)}\n{text[first.start():]}"}
     for name, pattern, new in PLACES:
         path = top / name
@@ -92,16 +92,16 @@ def joined(top: Path, paths: list[Path], version: str, date: str) -> dict[Path, 
 
 
 def arguments_wrong(top: Path, version: str, date: str) -> str:
-    """What is wrong with the arguments of join, or nothing."""
+    """The error in the arguments of join, or an empty text."""
     old = re.search(PLACES[0][1], (top / PLACES[0][0]).read_text(encoding="utf-8"), re.MULTILINE)
     if not VERSION.fullmatch(version):
-        return f"{version} is no version MAJOR.MINOR.PATCH"
+        return f"{version} is not a version MAJOR.MINOR.PATCH"
     if old and tuple(map(int, old[2].split("."))) >= tuple(map(int, version.split("."))):
         return f"{version} is not later than {old[2]}"
     try:
-        return "" if datetime.date.fromisoformat(date).isoformat() == date else f"{date} is no date YYYY-MM-DD"
+        return "" if datetime.date.fromisoformat(date).isoformat() == date else f"{date} is not a date YYYY-MM-DD"
     except ValueError:
-        return f"{date} is no date YYYY-MM-DD"
+        return f"{date} is not a date YYYY-MM-DD"
 
 
 def join(top: Path, version: str, date: str) -> int:
@@ -124,7 +124,7 @@ def join(top: Path, version: str, date: str) -> int:
         new = path.with_name(f"{path.name}.new")
         new.write_text(text, encoding="utf-8")
         new.replace(path)
-    for path in paths:  # only now: their texts are in CHANGELOG.md
+    for path in paths:  # only now, when their texts are in CHANGELOG.md
         path.unlink()
     print(f"changes joined: {len(paths)}; version {version}. Check the files, commit and tag them.")
     return 0

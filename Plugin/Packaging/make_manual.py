@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""make_manual.py OUTPUT: writes the manual page tautline.1.gz and the completion of bash, tautline.bash.
+"""make_manual.py OUTPUT: writes the manual page tautline.1.gz and the bash completion, tautline.bash.
 
-Both are made from the parser of the command line, so that they have every command and option.
+Both are generated from the command-line parser, so they contain every command and option.
 """
 
 import argparse
@@ -23,12 +23,12 @@ tautline \- measure, repair, deform and match meshes, and solve equations on the
 .RI [ ARGUMENT ...]
 .SH DESCRIPTION
 Every command reads meshes from files and writes files; none changes a file that it reads.
-\fBtautline\fP \fICOMMAND\fP \fB\-\-help\fP describes the options of a command that most need,
+\fBtautline\fP \fICOMMAND\fP \fB\-\-help\fP describes the most common options of a command,
 \fB\-\-help\-all\fP all of them. The file to write is the option \fB\-o\fP or the last argument.
 .SH COMMANDS
 """
 TAIL = r""".SH EXIT STATUS
-0 after success, 1 after an error, which is printed on standard error, 2 after wrong usage or an unknown name, 3
+0 after success, 1 after an error, which is printed on standard error, 2 after incorrect usage or an unknown name, 3
 if a mesh does not meet the criteria of \fBquality \-\-criteria\fP, 130 after Ctrl\-C.
 .SH ENVIRONMENT
 .TP
@@ -42,7 +42,7 @@ COMPLETION = r"""# shellcheck shell=bash disable=SC2207
 # Completion of the command tautline in bash.
 _tautline()
 {
-  local IFS=$'\n' # between the words to choose from, so that names of files may have spaces
+  local IFS=$'\n' # separates the candidates, so that file names may contain spaces
   local current="${COMP_WORDS[COMP_CWORD]}" previous="${COMP_WORDS[COMP_CWORD - 1]}" options=""
   COMPREPLY=()
   if ((COMP_CWORD == 1)); then
@@ -104,7 +104,7 @@ def manual(commands: dict) -> str:
 
 
 def completion(commands: dict) -> str:
-    """Commands, options of each, values of options with choices, else files."""
+    """Completes commands, their options, values of options with choices, and otherwise files."""
     options, choices = [], []
     for name, (parser, _) in commands.items():
         options.append(f"  {name}) options=\"{' '.join(o for a in parser._actions for o in a.option_strings)}\" ;;")
@@ -121,7 +121,7 @@ def completion(commands: dict) -> str:
 def main(output: Path) -> None:
     commands = commands_of(_parser())
     output.mkdir(parents=True, exist_ok=True)
-    compressed = gzip.compress(manual(commands).encode(), mtime=0)  # the same bytes every time
+    compressed = gzip.compress(manual(commands).encode(), mtime=0)  # reproducible bytes
     (output / "tautline.1.gz").write_bytes(compressed)
     (output / "tautline.bash").write_text(completion(commands), encoding="utf-8")
 

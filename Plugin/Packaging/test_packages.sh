@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# test_packages.sh PACKAGES VERSION SOURCE_TREE [SUITE [MIRROR]]: installs the packages of a directory in a fresh chroot of
-# a Debian release, uses what they bring as its users would, removes them, and looks for what is left. Needs root,
-# debootstrap and the network; takes about 2 GB in TMPDIR. TAUTLINE_CHROOT names a chroot to use again.
+# test_packages.sh PACKAGES VERSION SOURCE_TREE [SUITE [MIRROR]]: installs the packages of a directory in a fresh chroot
+# of a Debian release, uses them as a user would, removes them, and checks that no file remains. Needs root, debootstrap
+# and the network; takes about 2 GB in TMPDIR. TAUTLINE_CHROOT names a chroot to reuse.
 set -euo pipefail
 packages="$(cd "$1" && pwd -P)" version="$2" source="$3" suite="${4:-bookworm}" mirror="${5:-http://deb.debian.org/debian}"
 names=(libtautline python3-tautline paraview-tautline tautline-meshers libtautline-dev tautline-doc)
@@ -17,14 +17,14 @@ if [[ -z $root ]]; then
   echo "--- a bare $suite in $root"
   debootstrap --variant=minbase "$suite" "$root" "$mirror" >"$root.log" 2>&1 || fail "debootstrap failed: $root.log"
 fi
-# Programs expect /proc, and hwloc prints a message without /sys; where they cannot be mounted, they are tried without.
+# Programs expect /proc, and hwloc prints a message without /sys; if one cannot be mounted, the test continues without it.
 for place in proc:proc sysfs:sys; do
   mount -t "${place%:*}" "${place%:*}" "$root/${place#*:}" 2>/dev/null || continue
   remove="$(trap -p EXIT | sed "s/^trap -- '//; s/' EXIT$//")"
-  # shellcheck disable=SC2064 # of now
+  # shellcheck disable=SC2064 # expands now
   trap "umount $root/${place#*:}; $remove" EXIT
 done
-# A shell in the chroot, of a user's environment: nothing of this machine is inherited.
+# A shell in the chroot with a user's environment: nothing is inherited from this machine.
 inside() { chroot "$root" /usr/bin/env -i HOME=/root LANG=C.UTF-8 DEBIAN_FRONTEND=noninteractive \
   PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin LIBGL_ALWAYS_SOFTWARE=1 \
   OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 bash -euo pipefail -c "$1"; }
@@ -32,13 +32,13 @@ files() { (cd "$root" && find usr etc opt -not -path '*/__pycache__*' | sort); }
 
 inside 'apt-get update -q; apt-get install -y -q --no-install-recommends xvfb xauth libgl1-mesa-dri man-db g++ cmake ninja-build' \
   >"$root/apt.log" 2>&1 || fail "apt-get: $root/apt.log"
-inside "apt-get purge -y -q ${names[*]}" >>"$root/apt.log" 2>&1 || true # of an earlier test in this chroot
+inside "apt-get purge -y -q ${names[*]}" >>"$root/apt.log" 2>&1 || true # left by an earlier test in this chroot
 mkdir -p "$root/packages" "$root/consumers"
 cp "$packages"/*.deb "$root/packages"
 cp -r "$source"/Testing/Install/*_consumer "$root/consumers"
 cp "$source/Testing/headless.sh" "$root/packages"
 
-echo "--- what the packages need is installed, so that it is not counted as left behind"
+echo "--- the dependencies are installed first, so that they do not count as left behind"
 inside 'apt-get install -y -q --no-install-recommends --simulate /packages/*.deb' >"$root/plan.log" ||
   fail "the packages cannot be installed: $root/plan.log"
 wanted="$(sed -n 's/^Inst \([^ ]*\) .*/\1/p' "$root/plan.log" | grep -v tautline || true)"
@@ -64,7 +64,7 @@ inside 'cd /tmp; tautline untangle /usr/share/tautline/samples/bracket-tangled.v
 grep -q 'inverted' "$root/quality.log" || fail "no quality"
 inside 'cd /tmp; python3 -c "import tautline as tl; q = tl.quality(\"valid.vtu\"); print(tl.__version__, q.inverted); assert q.inverted == 0"'
 
-echo "--- the mesh generators are a package of their own, which the others do without"
+echo "--- the mesh generators are a separate package; the others work without it"
 without="$(inside 'cd /tmp; mv /usr/libexec/tautline/tautline-mesher /tmp; code=0
   tautline tet-mesh /usr/share/tautline/samples/cube.smesh -o cube.vtu 2>&1 || code=$?
   mv /tmp/tautline-mesher /usr/libexec/tautline; echo "code $code"')"
@@ -122,7 +122,7 @@ code=0
 inside 'tautline study list' || code=$?
 ((code == 2)) || fail "tautline study without tautline-doc exits with $code"
 
-echo "--- removed, nothing is left"
+echo "--- removal leaves nothing behind"
 inside "apt-get purge -y -q ${names[*]}" >>"$root/apt.log" 2>&1 || fail "apt-get: $root/apt.log"
 left="$(comm -13 "$root/before.txt" <(files))"
 [[ -z $left ]] || fail "left behind: $left"

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# test_platform.sh SOURCE_TREE SUITE LOG [MIRROR]: builds and tests the committed files in a bare chroot of a Debian release.
-# The last line that it prints is a row of a table: suite, ParaView, compiler, packages, build, tests. Needs root,
-# debootstrap, the network, and about 7 GB in TMPDIR. TAUTLINE_PLATFORM_ROOT names a chroot that is kept, and used again
-# if it is there: packages and objects of the last time stay, and ccache is used where it is installed in it.
+# test_platform.sh SOURCE_TREE SUITE LOG [MIRROR]: builds and tests the committed files in a bare chroot of a Debian
+# release. The last line printed is a table row: suite, ParaView, compiler, packages, build, tests. Needs root,
+# debootstrap, the network, and about 7 GB in TMPDIR. TAUTLINE_PLATFORM_ROOT names a chroot that is kept and, if it
+# exists, reused with its packages and object files; ccache is used if it is installed in the chroot.
 set -uo pipefail
 source="$1" suite="$2" log="$3" mirror="${4:-http://deb.debian.org/debian}"
 fail() { echo "test_platform.sh: $*; see $log" >&2; row; exit 1; }
@@ -21,12 +21,12 @@ cleanup() {
 trap cleanup EXIT
 : >"$log"
 [[ -x $root/usr/bin/apt-get ]] || debootstrap --variant=minbase "$suite" "$root" "$mirror" >>"$log" 2>&1 || fail "debootstrap"
-# What programs expect: hwloc prints a message without /sys, the tests of progress bars open terminals, MPI shares memory.
+# Programs expect these mounts: hwloc prints a message without /sys, progress-bar tests open terminals, MPI shares memory.
 for place in proc:proc sysfs:sys devpts:dev/pts tmpfs:dev/shm; do
   mkdir -p "$root/${place#*:}"
   if mount -t "${place%:*}" "${place%:*}" "$root/${place#*:}" 2>>"$log"; then mounted+=("$root/${place#*:}"); fi
 done
-# Nothing of this machine's environment. One process a core: ninja's two more need memory that small machines lack.
+# Nothing is inherited from this machine. One process per core: ninja's two more need memory that small machines lack.
 launcher=()
 [[ ! -x $root/usr/bin/ccache ]] || launcher=(CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache)
 inside() {
@@ -36,7 +36,7 @@ inside() {
 }
 mkdir -p "$root/tautline"
 git -C "$source" archive HEAD | tar -x -C "$root/tautline" || fail "git archive"
-# The tests of style look at a checkout, too.
+# The style tests also need a checkout.
 inside 'apt-get update -q && apt-get install -y -q --no-install-recommends ca-certificates git' >>"$log" 2>&1 || fail "apt-get"
 inside 'cd /tautline && ./run build' >>"$log" 2>&1 && build=yes
 paraview="$(inside "dpkg-query -W -f='\${source:Upstream-Version}' paraview" 2>>"$log" || echo -)"

@@ -9,7 +9,7 @@
 //------------------------------------------------------------------------------
 bool tautline::isLoadingState()
 {
-  // The first is set for Python states, the second for XML, also where a script loads it.
+  // The first is set for Python states, the second for XML states, even if a script loads them.
   pqApplicationCore* core = pqApplicationCore::instance();
   vtkSMSessionProxyManager* proxies = vtkSMProxyManager::IsInitialized()
     ? vtkSMProxyManager::GetProxyManager()->GetActiveSessionProxyManager()

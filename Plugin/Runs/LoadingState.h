@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file LoadingState.h
- * @brief Whether ParaView loads a state.
+ * @brief Checks whether ParaView is loading a state.
  */
 
 #ifndef tautline_LoadingState_h
@@ -11,8 +11,8 @@ namespace tautline
 {
 
 /**
- * Whether ParaView loads a state file now, XML or Python. What is shown then has the colours, the
- * axes and the series of the state: those that the plugin gives to new displays are not for it.
+ * Whether ParaView is loading a state file, XML or Python. Its displays keep the colors, axes and
+ * series of the state: the plugin's defaults for new displays do not apply.
  */
 bool isLoadingState();
 

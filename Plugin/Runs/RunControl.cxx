@@ -27,8 +27,7 @@ namespace
 
 std::atomic<bool> StopRequested{ false };
 
-/// The remote call: its number among those of ParaView, and its argument, which no other message
-/// contains.
+/// The tag of the remote call, which ParaView does not use, and its unique argument.
 constexpr int StopTag = 274115;
 constexpr char StopMessage[] = "Tautline: stop the run, 6f1d2ce0-93b7-4c58-8f3e-5a0e7bd4c911";
 constexpr int FirstProcess = 1; // of the server, for the client
@@ -38,7 +37,7 @@ void ignoreStop(void*, void*, int, int)
 {
 }
 
-/// The connection to the client, on a server; else null.
+/// The connection to the client on a server, otherwise null.
 vtkSocketCommunicator* clientConnection()
 {
   vtkProcessModule* module = vtkProcessModule::GetProcessModule();
@@ -59,7 +58,7 @@ vtkSocketCommunicator* clientConnection()
   return vtkSocketCommunicator::SafeDownCast(client->GetCommunicator());
 }
 
-/// Whether the request is among the bytes that wait in the socket, which stay there.
+/// Whether the bytes that wait in the socket contain the request; they stay there.
 bool isStopWaiting(vtkSocketCommunicator* connection)
 {
   constexpr std::size_t mostBytes = 1 << 20;
@@ -76,7 +75,7 @@ bool isStopWaiting(vtkSocketCommunicator* connection)
 void poll(vtkAlgorithm* algorithm, bool keepsBest)
 {
   vtkSocketCommunicator* client = clientConnection();
-  // Whoever watches learns that the run goes on; ParaView passes on ten messages a second, or one.
+  // Shows observers that the run continues; ParaView forwards ten messages per second, or one.
   double progress = algorithm->GetProgress();
   algorithm->InvokeEvent(vtkCommand::ProgressEvent, &progress);
   if (keepsBest && (client ? isStopWaiting(client) : isStopRequested()))

@@ -14,7 +14,7 @@ namespace
 
 const QColor Colors[] = { QColor(31, 119, 180), QColor(214, 96, 16) };
 
-/// The range of an axis, and where a value is in it.
+/// The range of an axis, and the position of a value in it.
 struct Axis
 {
   double low = 0, high = 1;
@@ -101,7 +101,7 @@ void RunPlot::paintEvent(QPaintEvent*)
   const int line = this->fontMetrics().lineSpacing();
   const int margin = this->fontMetrics().horizontalAdvance("-0.0000e+00");
   const QRectF area =
-    QRectF(this->rect()).adjusted(margin, 1.5 * line, -margin, -1.25 * line); // texts around
+    QRectF(this->rect()).adjusted(margin, 1.5 * line, -margin, -1.25 * line); // space for labels
   painter.setPen(this->palette().color(QPalette::Mid));
   painter.drawRect(area);
 

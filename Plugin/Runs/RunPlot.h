@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class tautline::RunPlot
- * @brief Draws two values over the iterations of a run: the first on the left axis, the second on
- * the right one.
+ * @brief Plots two values over the iterations of a run: the first on the left axis, the second on
+ * the right axis.
  *
- * An axis is logarithmic if all its values are above 0 and they span more than a factor of ten.
+ * An axis is logarithmic if all its values are positive and span more than a factor of ten.
  */
 
 #ifndef tautline_RunPlot_h
@@ -24,7 +24,7 @@ class RunPlot : public QWidget
   Q_OBJECT
 
 public:
-  /// A curve: its name, and its values at iterations.
+  /// A curve: its name, and its values by iteration.
   struct Curve
   {
     QString name;
@@ -33,11 +33,11 @@ public:
 
   explicit RunPlot(QWidget* parent = nullptr);
 
-  /// Forgets the curves.
+  /// Removes the curves.
   void clear();
 
-  /// Adds values at an iteration; a smaller iteration than the last begins new curves, and the
-  /// same replaces the last values.
+  /// Adds the values of an iteration. A number below the last one starts new curves; an equal
+  /// number replaces the last values.
   void add(int iteration, const QString& name, double value, int curve);
 
   const std::array<Curve, 2>& curves() const { return this->Curves; }

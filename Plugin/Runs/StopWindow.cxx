@@ -16,7 +16,7 @@ namespace tautline
 struct StopWindow::Connection
 {
   xcb_connection_t* display = nullptr;
-  /// Receives the message that ends the thread; never visible.
+  /// Receives the message that ends the thread; always invisible.
   xcb_window_t hidden = XCB_WINDOW_NONE;
   xcb_window_t cover = XCB_WINDOW_NONE;
   std::thread waiter;
@@ -38,10 +38,10 @@ xcb_window_t inputWindow(
   return window;
 }
 
-/// Waits for events until the message arrives, or the X server ends.
+/// Waits for events until the message arrives or the X server exits.
 void wait(xcb_connection_t* display, const std::function<void()>& clicked)
 {
-  constexpr int sentMask = 0x80; // of events that a client has sent
+  constexpr int sentMask = 0x80; // marks events sent by a client
   while (xcb_generic_event_t* event = xcb_wait_for_event(display))
   {
     const int type = event->response_type & ~sentMask;

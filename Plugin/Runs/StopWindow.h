@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file StopWindow.h
- * @brief Notices clicks on a widget while the application processes no events.
+ * @brief Detects clicks on a widget while the application processes no events.
  */
 
 #ifndef tautline_StopWindow_h
@@ -17,14 +17,13 @@ namespace tautline
 
 /**
  * @class tautline::StopWindow
- * @brief An invisible window of the X server over a widget, which takes the clicks on it.
+ * @brief An invisible X window that covers a widget and receives its clicks.
  *
- * Without processing events Qt notices no click. With it, a run of a filter would be entered again:
- * timers open dialogs and update the pipeline within the update. This window belongs to a
- * connection of its own to the X server, on which a thread waits: nothing of Qt or ParaView is
- * executed because of a click.
+ * Qt detects clicks only when it processes events. Processing them during a run could reenter the
+ * filter: timers open dialogs and update the pipeline within the update. This window has a separate
+ * connection to the X server, on which a thread waits: a click executes no code of Qt or ParaView.
  *
- * Window systems other than X11 have no such window (ParaView 5.11 runs on X11 on Linux).
+ * Such a window exists only on X11 (on Linux, ParaView 5.11 runs on X11).
  */
 class StopWindow
 {
@@ -35,10 +34,10 @@ public:
   StopWindow(const StopWindow&) = delete;
   StopWindow& operator=(const StopWindow&) = delete;
 
-  /// Whether the window system has such windows.
+  /// Whether the window system supports such windows.
   bool isAvailable() const;
 
-  /// Covers a widget, if it is visible, until uncover().
+  /// Covers a widget until uncover() is called, if the widget is visible.
   void cover(QWidget* widget);
   void uncover();
 

@@ -47,7 +47,7 @@ namespace
 {
 constexpr const char* StopTip = "End the run with the best mesh so far.";
 constexpr const char* Stopped = ": stopped";
-constexpr const char* IdleTip = "No filter of Tautline runs.";
+constexpr const char* IdleTip = "No Tautline filter is running.";
 
 bool isIterative(const QString& filter)
 {
@@ -56,8 +56,9 @@ bool isIterative(const QString& filter)
 }
 
 /**
- * The column of a table History that is drawn on the left axis (0) or on the right one (1):
- * objective and worst element or inverted ones; of Improve Mesh a count and the worst element.
+ * The column of the table History for the left axis (0) or the right axis (1): the objective, and
+ * the worst element or the number of inverted elements. For Improve Mesh, a count and the worst
+ * element.
  */
 vtkIdType columnOf(vtkTable* table, int axis)
 {
@@ -73,7 +74,7 @@ vtkIdType columnOf(vtkTable* table, int axis)
   return -1;
 }
 
-/// Of several blocks, whether the worst value is the smallest one.
+/// Whether the worst value of several blocks is the smallest one.
 bool isLargerBetter(const QString& column)
 {
   const QString metric = QString(column).remove(QRegularExpression("( worst$|^Worst )"));
@@ -82,8 +83,9 @@ bool isLargerBetter(const QString& column)
 }
 
 /**
- * The values of a column by iteration. Of several blocks, whose rows are below each other, the
- * worst value or, of counts and objectives, the sum; one that ended earlier keeps its last value.
+ * The values of a column by iteration. The rows of several blocks follow each other: their worst
+ * value is taken, or their sum for counts and objectives. A block that ended earlier keeps its last
+ * value.
  */
 std::vector<double> valuesOf(vtkTable* table, vtkIdType column)
 {
@@ -121,7 +123,7 @@ std::vector<double> valuesOf(vtkTable* table, vtkIdType column)
   return values;
 }
 
-/// The value of a property of texts; empty without one.
+/// The value of a string property; empty if there is none.
 QString textOf(vtkSMProxy* proxy, const char* property)
 {
   vtkSMProperty* found = proxy->GetProperty(property);
@@ -133,7 +135,7 @@ QString textOf(vtkSMProxy* proxy, const char* property)
   return QString::fromUtf8(vtkSMPropertyHelper(found).GetAsString());
 }
 
-/// How the last run of a filter ended, by its own report.
+/// The outcome of the last run of a filter, from its summary.
 QString endOf(vtkSMProxy* filter)
 {
   const QString summary = textOf(filter, "Summary"), reason = textOf(filter, "Reason");
@@ -144,7 +146,7 @@ QString endOf(vtkSMProxy* filter)
                                                              : ": finished";
 }
 
-/// Shows what was drawn, though no event is processed.
+/// Shows the drawing, although no event is processed.
 void flush()
 {
   if (xcb_connection_t* display = tautline::xcbConnection())
@@ -175,7 +177,7 @@ pqTautlineRunDock::pqTautlineRunDock(QWidget* parentObject)
   this->setStop("Stop", IdleTip, false);
   this->Stop->setToolButtonStyle(Qt::ToolButtonTextOnly);
   this->Stop->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
-  // The texts change while no layout can be made.
+  // The texts change while the layout cannot be updated.
   constexpr int letters = 28, lines = 3;
   this->Values->setMinimumWidth(letters * this->fontMetrics().averageCharWidth());
   this->Values->setMinimumHeight(lines * this->fontMetrics().lineSpacing());
@@ -283,16 +285,14 @@ QString pqTautlineRunDock::whyNoStop(const QString& filter) const
   pqServer* server = pqActiveObjects::instance().activeServer();
   if (!isIterative(filter))
   {
-    return filter + " has no mesh to keep before its end. Its Time Limit ends it.";
+    return filter + " has no mesh to keep before it finishes. Use its Time Limit instead.";
   }
   if (server && server->getNumberOfPartitions() > 1)
   {
-    return "A server of several processes cannot be interrupted: one that ends alone leaves the "
-           "others waiting. The Time Limit ends the run.";
+    return "A run on several server processes cannot be stopped: a process that stops alone would "
+           "leave the others waiting. Use the Time Limit instead.";
   }
-  return this->Cover->isAvailable() ? ""
-                                    : "Clicks within a run are noticed on X11 only. The Time Limit "
-                                      "ends the run.";
+  return this->Cover->isAvailable() ? "" : "Stop works only on X11. Use the Time Limit instead.";
 }
 
 //------------------------------------------------------------------------------
@@ -421,7 +421,7 @@ void pqTautlineRunDock::stateChanged(pqServerManagerModelItem* item)
 //------------------------------------------------------------------------------
 void pqTautlineRunDock::showHistoryLater(pqPipelineSource* source)
 {
-  // Fetching updates a pipeline, which is not done within an update.
+  // Fetching updates a pipeline, which is not possible within an update.
   const QPointer<pqPipelineSource> updated = source;
   QTimer::singleShot(0, this,
     [this, updated]
@@ -446,7 +446,7 @@ void pqTautlineRunDock::showHistory(pqPipelineSource* source)
   const QString ended = filter + endOf(source->getProxy());
   if (!isIterative(filter))
   {
-    if (!this->drawn()) // a curve stays until there is another
+    if (!this->drawn()) // a curve stays until another replaces it
     {
       this->Filter->setText(ended);
       this->Values->clear();
@@ -474,7 +474,7 @@ void pqTautlineRunDock::showHistory(pqPipelineSource* source)
     {
       continue;
     }
-    // As in the texts of the progress: "imr worst" and "Worst imr" are "worst".
+    // As in the progress texts: "imr worst" and "Worst imr" are "worst".
     QString name =
       QString(table->GetColumnName(column)).remove(QRegularExpression("^N ")).toLower();
     history[curve].first = name.contains("worst") ? "worst" : name;
@@ -488,8 +488,8 @@ void pqTautlineRunDock::showHistory(pqPipelineSource* source)
       history[curve].first + ' ' + QString::number(history[curve].second.back(), 'g', digits));
   }
 
-  // ParaView reports updates without a run, too. Of a run that was shown live, the text stands,
-  // unless that of a filter before it, executed in the same update, has replaced it.
+  // ParaView also reports updates without a run. After a run that was shown live, its text stays,
+  // unless the text of an upstream filter, executed in the same update, has replaced it.
   if (filter == this->Ended)
   {
     this->Filter->setText(this->EndedText.endsWith(Stopped) ? this->EndedText : ended);

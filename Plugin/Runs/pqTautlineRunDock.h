@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class pqTautlineRunDock
- * @brief Shows the run of a filter of Tautline while it lasts, and stops it.
+ * @brief Shows the progress of a Tautline filter and can stop its run.
  *
- * Of Optimize Mesh, Untangle Mesh and Improve Mesh it draws two values over the iterations, and the
- * button Stop ends the run with the best mesh so far. Of the other filters it shows the progress.
- * The values are those of the text of the progress, which also comes from a server; see
- * vtkTautlineAlgorithm::ShowIteration(). ParaView drops texts that follow each other fast: after
- * the run, all iterations are drawn, from the filter's output History.
+ * For Optimize Mesh, Untangle Mesh and Improve Mesh, it plots two values over the iterations, and
+ * the button Stop ends the run with the best mesh so far. For other filters, it shows the progress.
+ * The values come from the progress text, which a server also sends; see
+ * vtkTautlineAlgorithm::ShowIteration(). ParaView drops texts in quick succession: after the run,
+ * all iterations are plotted from the filter's output History.
  *
- * Nothing is executed within a run but the drawing of this dock: no events are processed. The
- * clicks on Stop are noticed by tautline::StopWindow; see RunControl.h for how the run ends.
+ * During a run, only this dock is redrawn: no events are processed. tautline::StopWindow detects
+ * the clicks on Stop; RunControl.h describes how the run ends.
  *
- * The dock appears the first time that one of the three filters is created.
+ * The dock appears when one of the three filters is created for the first time.
  */
 
 #ifndef pqTautlineRunDock_h
@@ -45,8 +45,8 @@ class pqTautlineRunDock : public QDockWidget
   using Superclass = QDockWidget;
 
   ///@{
-  /// What the last run showed, for tests: whether a curve was drawn, up to which iteration, and the
-  /// names of the two axes.
+  /// For tests: whether the last run drew a curve, its last iteration, and the names of the two
+  /// axes.
   Q_PROPERTY(bool drawn READ drawn)
   Q_PROPERTY(int iterations READ iterations)
   Q_PROPERTY(QString axes READ axes)
@@ -72,7 +72,7 @@ private:
   /// Name and values of the two curves.
   using History = std::array<std::pair<QString, std::vector<double>>, 2>;
 
-  /// The name in the menu of the filter that a text of the progress is of; "" if not Tautline's.
+  /// The menu name of the filter that sent a progress text; "" if it is not a Tautline filter.
   QString filterOf(const QString& text) const;
   /// Why the run of a filter cannot be stopped; "" if it can.
   QString whyNoStop(const QString& filter) const;
@@ -83,8 +83,8 @@ private:
   void showHistory(pqPipelineSource* source);
   void setStop(const QString& text, const QString& tip, bool enabled);
 
-  std::map<QString, QString> Filters; ///< name in the menu by name of class
-  QString Running;                    ///< name in the menu; "" if no filter runs
+  std::map<QString, QString> Filters; ///< menu name by class name
+  QString Running;                    ///< menu name; "" if no filter runs
   QString Ended;                      ///< the filter that ran; "" once its history is drawn
   QString EndedText;                  ///< how its run ended
   History Last;                       ///< the history drawn last

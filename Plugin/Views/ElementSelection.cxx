@@ -37,7 +37,7 @@ Proxy newProxy(pqOutputPort* port, const char* group, const char* name)
   return proxy;
 }
 
-/// A source of a selection of cells; its properties are to be set.
+/// A selection source for cells; its properties have yet to be set.
 Proxy newSource(pqOutputPort* port, const char* name)
 {
   Proxy source = newProxy(port, "sources", name);
@@ -45,7 +45,7 @@ Proxy newSource(pqOutputPort* port, const char* name)
   return source;
 }
 
-/// Makes an expression of sources, named s0, s1, ..., the selection of the output.
+/// Selects on the output by an expression of the sources, which are named s0, s1, ...
 void select(pqOutputPort* port, const std::vector<Proxy>& sources, const std::string& expression)
 {
   Proxy combined = newProxy(port, "filters", "AppendSelections");
@@ -74,7 +74,7 @@ bool isPartitioned(int type)
   return type == VTK_PARTITIONED_DATA_SET || type == VTK_MULTIPIECE_DATA_SET;
 }
 
-/// Appends the three numbers by which ParaView identifies a cell of composite data.
+/// Appends the three numbers that identify a cell of composite data in ParaView.
 bool appendComposite(
   const std::vector<ElementLeaf>& leaves, const ElementName& name, std::vector<vtkIdType>& ids)
 {
@@ -94,7 +94,7 @@ bool appendComposite(
   return false;
 }
 
-/// Appends the two numbers by which ParaView identifies a cell of a data set.
+/// Appends the two numbers that identify a cell of a data set in ParaView.
 bool append(pqOutputPort* port, const ElementName& name, std::vector<vtkIdType>& ids)
 {
   const int processes = port->getServer()->getNumberOfPartitions();
@@ -130,7 +130,7 @@ vtkSmartPointer<vtkSMSourceProxy> selectionOf(
       [](const ElementName& name) { return name.block < 0 && name.process < 0; });
   if (composite && !global && port->getServer()->getNumberOfPartitions() > 1)
   {
-    problem = "A cell of blocks on several processes has no unique number: apply Generate Global "
+    problem = "Cells of blocks on several processes have no unique numbers: apply Generate Global "
               "Ids first.";
     return nullptr;
   }
@@ -147,7 +147,7 @@ vtkSmartPointer<vtkSMSourceProxy> selectionOf(
     else if (composite ? !appendComposite(leaves, name, ids) : !append(port, name, ids))
     {
       problem = "The output has no cell " + std::to_string(name.cell) +
-        ": apply the filter again, the result shown is of another mesh.";
+        ": the result shown belongs to another mesh. Apply the filter again.";
       return nullptr;
     }
   }
@@ -213,7 +213,7 @@ std::vector<ElementLeaf> elementLeaves(pqOutputPort* port)
   vtkPVDataInformation* all = port->getDataInformation();
   const vtkTypeInt64 cells = all->GetNumberOfCells();
   vtkTypeInt64 found = 0;
-  // The end of the partitioned data set that the next data sets are in, in cells.
+  // The cell at which the partitioned data set of the next data sets ends.
   vtkTypeInt64 end = isPartitioned(all->GetCompositeDataSetType()) ? cells : 0;
   ElementLeaf at;
   for (at.flatIndex = 1; found < cells && at.flatIndex < mostNodes; ++at.flatIndex)
@@ -277,7 +277,7 @@ void zoomToSelected(pqOutputPort* port)
   }
   double bounds[6];
   port->getSelectedDataInformation()->GetBounds(bounds);
-  // The elements around show where it is.
+  // The surrounding elements show its position.
   constexpr double margin = 1.0;
   zoomTo(view, bounds, margin);
 }

@@ -3,8 +3,8 @@
  * @file ElementSelection.h
  * @brief Selects cells of an output as a selection of ParaView, and moves the camera to them.
  *
- * The selections are evaluated where the data are, on the server: nothing but the request and the
- * number of cells selected is sent. Extract Selection and Find Data work on them.
+ * The selections are evaluated where the data are, on the server: only the request and the
+ * number of selected cells are sent. Extract Selection and Find Data work on them.
  */
 
 #ifndef tautline_ElementSelection_h
@@ -23,7 +23,7 @@ class vtkSMSourceProxy;
 namespace tautline
 {
 
-/// A cell, as the summaries and tables of the filters name it.
+/// A cell, as named in the summaries and tables of the filters.
 struct ElementName
 {
   vtkIdType cell = 0;
@@ -38,7 +38,7 @@ struct ElementLeaf
   unsigned int flatIndex = 0;
   vtkTypeInt64 cells = 0;
   int block = 0;     ///< the number in summaries: the flat index if partitions were one data set
-  int partition = 0; ///< from 1, of a partitioned or multipiece data set; else 0
+  int partition = 0; ///< from 1, of a partitioned or multipiece data set; otherwise 0
 };
 
 /// A closed interval of the values of a cell array.
@@ -49,43 +49,43 @@ struct CellInterval
   double high = 0;
 };
 
-/// Alternatives, each a list of intervals: a cell fulfils the condition if it is in all intervals
-/// of one of them.
+/// Alternatives, each a list of intervals: a cell satisfies the condition if it is in all intervals
+/// of at least one alternative.
 using CellCondition = std::vector<std::vector<CellInterval>>;
 
 /**
- * @brief A source of a selection of some cells, which is not selected yet.
- * @param problem what is wrong, with the remedy, if the result is null
+ * @brief A selection source for some cells, which are not selected yet.
+ * @param problem the error, with a fix, if the result is null
  */
 vtkSmartPointer<vtkSMSourceProxy> selectionOf(
   pqOutputPort* port, const std::vector<ElementName>& names, std::string& problem);
 
 /**
- * @brief Selects some cells, and nothing else.
+ * @brief Selects only the given cells.
  *
  * If the cells have global ids and a name gives neither block nor process, it is a global id.
- * @return "" or what is wrong, with the remedy; then nothing changes.
+ * @return "", or the error with a fix; then nothing changes.
  */
 std::string selectElements(pqOutputPort* port, const std::vector<ElementName>& names);
 
 /**
- * @brief Selects the cells that fulfil all, or at least one, of some conditions. Without
+ * @brief Selects the cells that satisfy all conditions, or at least one. Without
  * conditions, clears the selection.
- * @return the number of cells selected
+ * @return the number of selected cells
  */
 vtkTypeInt64 selectWhere(
   pqOutputPort* port, const std::vector<CellCondition>& conditions, bool all);
 
-/// The data sets with cells of composite data.
+/// The data sets of composite data that have cells.
 std::vector<ElementLeaf> elementLeaves(pqOutputPort* port);
 
-/// The number of cells selected on an output.
+/// The number of selected cells of an output.
 vtkTypeInt64 countSelected(pqOutputPort* port);
 
 /// Moves the camera of a view to bounds; the margin around them is a multiple of their size.
 void zoomTo(pqRenderView* view, const double bounds[6], double margin);
 
-/// Moves the camera of the active render view to what is selected, with some of what is around.
+/// Moves the camera of the active render view to the selection and some of its surroundings.
 void zoomToSelected(pqOutputPort* port);
 
 } // namespace tautline

@@ -56,7 +56,7 @@ void tautline::closeNeedlessChart(pqDataRepresentation* chart)
   const int place = layout ? layout->GetViewLocation(view->getViewProxy()) : -1;
   builder->destroy(chart);
   builder->destroy(view);
-  if (place > 0) // not the only one
+  if (place > 0) // not the only view
   {
     layout->Collapse(place);
   }

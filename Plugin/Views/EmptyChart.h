@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file EmptyChart.h
- * @brief No chart where there is nothing to draw, or where the dock of the run draws it.
+ * @brief Closes charts that have nothing to draw or that the run dock already draws.
  *
- * ParaView opens the chart of an output when the filter is applied first, also if the filter has
- * refused its input and the table is empty, or has nothing to do and the table is one row. It takes
- * half of the space of the mesh.
+ * ParaView opens the chart of an output when the filter is first applied, even if the filter
+ * rejected its input (the table is empty) or had nothing to do (the table has one row). The chart
+ * takes half of the space of the mesh.
  */
 
 #ifndef tautline_EmptyChart_h
@@ -18,13 +18,13 @@ namespace tautline
 {
 
 /**
- * Closes the chart of an output without rows, of a line of one row, or of a run that the dock
- * draws, with its view, if there is nothing else in it. `chart` is deleted then. Not for other
- * displays. Call it outside of Apply.
+ * Closes a chart that has no rows, is a line with one row, or belongs to a run that the dock draws.
+ * Its view is also closed if it shows nothing more. `chart` is then deleted. Other displays are
+ * unchanged. Call it outside of Apply.
  */
 void closeNeedlessChart(pqDataRepresentation* chart);
 
-/// Opens the chart that was closed as empty, once there is something to draw.
+/// Reopens a chart that was closed as empty, once there is something to draw.
 void openClosedChart(pqPipelineSource* source);
 
 } // namespace tautline

@@ -20,7 +20,7 @@ namespace tautline
 namespace
 {
 
-/// The number of the output port of a name, or -1.
+/// The number of the output port with a name, or -1.
 int portOf(vtkSMSourceProxy* source, const char* name)
 {
   for (unsigned int port = 0; port < source->GetNumberOfOutputPorts(); ++port)
@@ -63,7 +63,7 @@ vtkSmartPointer<vtkDataObject> fetchOutput(pqPipelineSource* source, const char*
 vtkSmartPointer<vtkDataObject> fetchPart(
   vtkSMSourceProxy* source, unsigned int port, int process, double time)
 {
-  // Neither filter is part of what the user has made.
+  // Neither filter belongs to the user's pipeline.
   const pqScopedUndoExclude notUndone;
   auto reduced = newFilter("ReductionFilter", source, port);
   vtkSMPropertyHelper(reduced, "PassThrough").Set(process);

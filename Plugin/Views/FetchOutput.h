@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file FetchOutput.h
- * @brief Brings a small output of a filter from the server to the client.
+ * @brief Fetches a small output of a filter from the server.
  */
 
 #ifndef tautline_FetchOutput_h
@@ -17,16 +17,16 @@ namespace tautline
 {
 
 /**
- * @brief The data on an output port of a filter that was executed: a table, or a few points.
+ * @brief The data on an output port of an executed filter: a table, or a few points.
  *
- * Of several processes the first one's, which has the tables of Tautline's filters.
- * @param port the name of the port, "Statistics"
- * @return the data, or null: there is no such port, or the filter was not executed with the current
- * values of its properties
+ * On several processes, the data of the first process, which has the tables of Tautline's filters.
+ * @param port the name of the port, such as "Statistics"
+ * @return the data, or null if there is no such port or if the filter was not executed with the
+ * current values of its properties
  */
 vtkSmartPointer<vtkDataObject> fetchOutput(pqPipelineSource* source, const char* port);
 
-/// The part of one process of the data on a port; `time` as in the time keeper of the server.
+/// The data of one process on a port; `time` as in the time keeper of the server.
 vtkSmartPointer<vtkDataObject> fetchPart(
   vtkSMSourceProxy* source, unsigned int port, int process, double time);
 

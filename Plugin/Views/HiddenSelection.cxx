@@ -31,7 +31,7 @@ namespace
 
 constexpr const char* OriginalIds = "vtkOriginalCellIds";
 
-/// The number of an array in a list, to which it is added.
+/// The index of an array in a list; the array is added if it is missing.
 std::size_t placeOf(const std::string& array, std::vector<std::string>& arrays)
 {
   const auto found = std::find(arrays.begin(), arrays.end(), array);
@@ -144,7 +144,7 @@ void HiddenSelection::add(vtkDataSet* cells, ElementName name, ElementValues& va
   for (vtkIdType i = 0; i < cells->GetNumberOfCells(); ++i)
   {
     name.cell = static_cast<vtkIdType>(ids->GetComponent(i, 0));
-    // A name without block and process is a global id if there are such.
+    // A name without block and process is a global id if the cells have global ids.
     ElementValues::Row row{
       global ? ElementName{ static_cast<vtkIdType>(global->GetComponent(i, 0)), -1, -1, 0 } : name,
       std::vector<double>(values.arrays.size(), missing)
@@ -160,7 +160,7 @@ void HiddenSelection::add(vtkDataSet* cells, ElementName name, ElementValues& va
 //------------------------------------------------------------------------------
 void HiddenSelection::addBlocks(vtkCompositeDataSet* extract, ElementValues& values) const
 {
-  // The blocks are numbered as those of the output, of which the extract may leave some empty.
+  // The blocks are numbered as in the output; some may be empty in the extract.
   const std::vector<ElementLeaf> leaves = elementLeaves(this->Port);
   vtkSmartPointer<vtkCompositeDataIterator> iterator;
   iterator.TakeReference(extract->NewIterator());

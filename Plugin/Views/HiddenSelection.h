@@ -24,7 +24,7 @@ class vtkSMSourceProxy;
 namespace tautline
 {
 
-/// Cells with the values of the cell arrays of one component.
+/// Cells with the values of their one-component cell arrays.
 struct ElementValues
 {
   struct Row
@@ -39,9 +39,9 @@ struct ElementValues
 class HiddenSelection
 {
 public:
-  /// The cells with values of an array in a closed interval.
+  /// The cells whose values of an array are in a closed interval.
   HiddenSelection(pqOutputPort* port, const CellInterval& interval);
-  /// The cells of a source of a selection.
+  /// The cells of a selection source.
   HiddenSelection(pqOutputPort* port, vtkSMSourceProxy* selection);
 
   vtkTypeInt64 count() const;
@@ -59,7 +59,7 @@ private:
   vtkSmartPointer<vtkSMSourceProxy> Selection, Extract;
 };
 
-/// Numbers elements through all blocks and processes, or by global id, as names may do, too.
+/// Numbers elements across all blocks and processes, or by global id, as element names may also do.
 class ElementNumbers
 {
 public:

@@ -39,15 +39,15 @@ constexpr const char* LabelArray = "SelectionCellFieldDataArrayName";
 constexpr const char* Additional = "HiddenRepresentations";
 constexpr int FilledSelection = 2; // VTK_SURFACE
 
-/// Opacity of the mesh and of the neighbors: in a plane nothing is hidden by them.
+/// Opacity of the mesh and of the neighbors; in a plane, they hide nothing.
 constexpr double SolidOpacity = 0.1, PlaneOpacity = 0.4;
 constexpr double SolidNeighbors = 0.35, PlaneNeighbors = 1.0;
-/// A sliver is visible as its outline.
+/// The outline makes slivers visible.
 constexpr double OutlineWidth = 4.0; // pixels
 constexpr double OutlineColor[3] = { 1.0, 0.0, 1.0 };
 constexpr double EdgeColor[3] = { 0.1, 0.1, 0.1 };
 
-/// A 3D view: the active one, else one in which the mesh is shown, else any.
+/// A 3D view: the active one, otherwise one that shows the mesh, otherwise any.
 pqRenderView* viewFor(pqOutputPort* mesh)
 {
   auto* view = qobject_cast<pqRenderView*>(pqActiveObjects::instance().activeView());
@@ -115,7 +115,7 @@ bool Isolation::planar() const
 void Isolation::fade(pqDataRepresentation* mesh, const std::string& array, bool shownBefore)
 {
   const pqScopedUndoExclude notUndone;
-  // Other meshes, and the elements that Element Quality draws, would hide the elements.
+  // Other meshes, and the elements drawn by Element Quality, would hide these elements.
   std::vector<QPointer<pqDataRepresentation>> others;
   for (pqRepresentation* other : this->View->getRepresentations())
   {
@@ -217,7 +217,7 @@ void Isolation::draw(const std::vector<ElementName>& names, int layers, bool out
   vtkSMPropertyHelper(drawn.shown, Style).Set(outline ? "Wireframe" : WithEdges);
   if (outline)
   {
-    // Not by the active array.
+    // Not colored by the active array.
     vtkSMPropertyHelper(drawn.shown, "ColorArrayName")
       .SetInputArrayToProcess(vtkDataObject::CELL, "");
     vtkSMPropertyHelper(drawn.shown, "LineWidth").Set(OutlineWidth);

@@ -4,8 +4,8 @@
  * @brief Shows elements inside a mesh: the mesh fades, the elements are filled and outlined, and
  * layers of their neighbors are drawn around them.
  *
- * What is drawn in addition is neither part of the pipeline nor of saved states. end() restores
- * the view.
+ * The additional displays belong neither to the pipeline nor to saved states. end() restores the
+ * view.
  */
 
 #ifndef tautline_Isolation_h
@@ -34,36 +34,36 @@ class Isolation
 {
 public:
   Isolation() = default;
-  /// Restores nothing: at the end of the program the view is half destroyed.
+  /// Restores nothing: when the program exits, the view is already half destroyed.
   ~Isolation() = default;
   Isolation(const Isolation&) = delete;
   Isolation& operator=(const Isolation&) = delete;
 
   /**
-   * @brief Fades a mesh with its edges in a 3D view and hides what else is shown there. A hidden
+   * @brief Fades a mesh with its edges in a 3D view and hides everything else there. A hidden
    * mesh is shown.
    * @param array the cell array whose values are written beside the selected elements
-   * @return "" or what is wrong, with the remedy; then nothing changes.
+   * @return "", or the error with a fix; then nothing changes.
    */
   std::string begin(pqOutputPort* mesh, const std::string& array);
 
-  /// Whether begin() succeeded, and end() was not called since.
+  /// Whether begin() succeeded and end() has not been called since.
   bool active() const { return static_cast<bool>(this->Restore); }
 
   /**
-   * @brief Draws elements and their neighbors instead of those drawn before.
-   * @param layers of neighbors that share a point, from 0
+   * @brief Draws elements and their neighbors; they replace the previous ones.
+   * @param layers number of layers of neighbors that share a point, at least 0
    */
   void show(const std::vector<ElementName>& names, int layers);
 
-  /// Moves the camera to what show() drew.
+  /// Moves the camera to the elements drawn by show().
   void zoom() const;
 
-  /// Restores what begin() changed, and removes what was drawn.
+  /// Reverts the changes of begin() and removes the additional displays.
   void end();
 
 private:
-  /// Something drawn in addition.
+  /// An additional display.
   struct Drawn
   {
     vtkSmartPointer<vtkSMSourceProxy> selection, cells;
@@ -79,7 +79,7 @@ private:
   QPointer<pqRenderView> View;
   QPointer<pqDataRepresentation> Faded;
   std::vector<Drawn> Additions;
-  std::function<void()> Restore; ///< undoes what begin() changed
+  std::function<void()> Restore; ///< reverts the changes of begin()
 };
 
 } // namespace tautline

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Recolor.h
- * @brief Another array for the colours of what is shown.
+ * @brief Colors a display by another array.
  */
 #ifndef tautline_Recolor_h
 #define tautline_Recolor_h
@@ -11,7 +11,7 @@ class pqDataRepresentation;
 namespace tautline
 {
 /**
- * Colours what is shown by an array, and hides the legend of the array before where nothing else
+ * Colors a display by an array, and hides the legend of the previous array if no other display
  * needs it.
  * @param association vtkDataObject::POINT or CELL
  */

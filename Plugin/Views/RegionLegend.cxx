@@ -21,7 +21,7 @@
 namespace
 {
 constexpr const char* Regions = "Reference";
-/// Value and name of each region, and their colours: of good elements, and grey.
+/// Value and name of each region, and its color: the color of good elements, and gray.
 constexpr const char* Names[] = { "1", "1: domain", "2", "2: interaction layer" };
 constexpr double Colors[] = { 0.49, 0.71, 0.87, 0.75, 0.75, 0.75 };
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file RegionLegend.h
- * @brief Domain and interaction layer in two colours, with their names in the legend.
+ * @brief Two colors for domain and interaction layer, with their names in the legend.
  */
 #ifndef tautline_RegionLegend_h
 #define tautline_RegionLegend_h
@@ -11,9 +11,9 @@ class pqDataRepresentation;
 namespace tautline
 {
 /**
- * Colours a mesh of Interaction Layer or Mesh Domain by its array Reference, as categories, if
- * there is one. Arrays of this name from readers have other values: the colour map is that of this
- * representation alone.
+ * Colors a mesh of Interaction Layer or Mesh Domain by its array Reference, if there is one, as
+ * categories. Arrays with this name from readers have other values: this representation has a
+ * separate color map.
  */
 void showRegions(pqDataRepresentation* mesh);
 }

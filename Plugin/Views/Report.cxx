@@ -53,7 +53,7 @@ namespace
 
 constexpr unsigned int MeshPort = 0;
 constexpr const char* QualityProxy = "ElementQuality";
-/// The tables of Element Quality that the report has.
+/// The tables of Element Quality in the report.
 constexpr const char* QualityTables[] = { "Statistics", "Distribution", "Angles", "Histogram",
   "Criteria", "MeshChecks" };
 
@@ -65,7 +65,7 @@ bool isQuality(pqPipelineSource* source)
   return std::strcmp(source->getProxy()->GetXMLName(), QualityProxy) == 0;
 }
 
-/// Whether an output is a mesh that can be measured; images have cells that are all alike.
+/// Whether an output is a mesh that can be measured; the cells of an image are all equal.
 bool isMesh(pqOutputPort* port)
 {
   vtkPVDataInformation* info = port->getDataInformation();
@@ -73,7 +73,7 @@ bool isMesh(pqOutputPort* port)
     info->GetDataSetType() != VTK_RECTILINEAR_GRID;
 }
 
-/// The output on a port; where several processes have cells, their parts as blocks.
+/// The output on a port; if several processes have cells, their parts become blocks.
 Data fetchAll(vtkSMSourceProxy* source, unsigned int port, pqServer* server)
 {
   const double time = server->getTimeKeeper()->getTime();
@@ -140,7 +140,7 @@ int dimensionOf(vtkDataObject* mesh)
   return dimension;
 }
 
-/// Whether two meshes have the same cells, at the same places.
+/// Whether two meshes have the same cells at the same positions.
 bool isSameMesh(vtkDataObject* a, vtkDataObject* b)
 {
   const std::vector<vtkDataSet*> first = leavesOf(a), second = leavesOf(b);
@@ -177,7 +177,7 @@ bool isSameMesh(vtkDataObject* a, vtkDataObject* b)
     });
 }
 
-/// Element Quality of an output, executed: like another one, or as by default.
+/// An executed Element Quality of an output, with the settings of another one or the defaults.
 Source measure(pqOutputPort* port, vtkSMSourceProxy* like)
 {
   const pqScopedUndoExclude notUndone;
@@ -212,7 +212,7 @@ QString summaryOf(vtkSMProxy* proxy)
   return vtkSMPropertyHelper(summary).GetAsString();
 }
 
-/// The number of an output of Element Quality.
+/// The port number of an output of Element Quality.
 unsigned int portOf(vtkSMSourceProxy* quality, const char* name)
 {
   unsigned int port = 0;
@@ -247,7 +247,7 @@ struct Sides
   bool beforeInFile = false; ///< no filter is before it
 };
 
-/// The mesh before the filter or, for Element Quality, before the last filter that has changed it.
+/// The mesh before the filter or, for Element Quality, before the last filter that changed it.
 void findBefore(pqPipelineSource* source, vtkSMSourceProxy* like, Sides& sides)
 {
   const std::vector<pqPipelineSource*> steps = pipelineOf(source);
@@ -307,7 +307,7 @@ void addTables(vtkHtmlReport* report, pqPipelineSource* source)
       : Data();
     if (vtkTable* table = vtkTable::SafeDownCast(data))
     {
-      // The tables of Element Quality have headings of the same names.
+      // The tables of Element Quality have the same headings.
       const bool taken = std::any_of(std::begin(QualityTables), std::end(QualityTables),
         [name](const char* known) { return std::strcmp(known, name) == 0; });
       const std::string heading =
@@ -343,8 +343,8 @@ QString titleOf(pqPipelineSource* source)
                                                           : file + ": " + label;
 }
 
-/// The active view if it draws meshes, else one in which an output of the filter is visible, else
-/// any that draws meshes: tables and charts that a filter opens become active.
+/// The active view if it draws meshes, otherwise one in which an output of the filter is visible,
+/// otherwise any that draws meshes: tables and charts opened by a filter become active.
 pqView* viewOfMeshes(pqPipelineSource* source, pqView* active)
 {
   if (qobject_cast<pqRenderView*>(active))
@@ -368,7 +368,7 @@ pqView* viewOfMeshes(pqPipelineSource* source, pqView* active)
   return any;
 }
 
-/// What the view shows, if there is one.
+/// The picture of the view, if there is one.
 void addView(vtkHtmlReport* report, pqView* view)
 {
   auto* proxy = view ? vtkSMViewProxy::SafeDownCast(view->getProxy()) : nullptr;

@@ -16,25 +16,25 @@ namespace tautline
 {
 
 /**
- * @brief The report of a filter, see vtkHtmlReport: that of `tautline report` for the same meshes,
- * with the filters and their settings from the reader on.
+ * @brief The report of a filter, see vtkHtmlReport: equal to `tautline report` for the same
+ * meshes, with all filters from the reader on and their settings.
  *
- * Its mesh is measured by Element Quality with the default metric, unless the filter is Element
- * Quality itself, whose result is taken. The mesh before is the input of the filter, if its mesh
- * differs; for Element Quality, the input of the last filter before it that has changed the mesh.
- * Settings are the properties of the panels that differ from their default. A history and other
- * tables of the filter follow.
+ * Element Quality measures the mesh with the default metric; if the filter is Element Quality
+ * itself, its result is used. The mesh before is the input of the filter, if its mesh differs; for
+ * Element Quality, it is the input of the last upstream filter that changed the mesh. Settings are
+ * the panel properties that differ from their defaults. A history and other tables of the filter
+ * follow.
  *
- * The meshes are brought to the client, which draws them.
- * @param source a filter that was executed
- * @param view what it shows is added for filters other than Element Quality that leave the mesh as
- * it is, such as Solve PDE; if it draws no meshes, another one that does. May be null
+ * The meshes are transferred to the client, which draws them.
+ * @param source an executed filter
+ * @param view added as a picture for filters that leave the mesh unchanged, such as Solve PDE, but
+ * not for Element Quality; if it draws no meshes, another view that does is used. May be null
  */
 QString reportOf(pqPipelineSource* source, pqView* view);
 
 /**
- * @brief Replaces a file by a text as a whole: after a failure the older file is still there.
- * @return "" or what is wrong
+ * @brief Replaces the whole content of a file with a text; after a failure, the old file remains.
+ * @return "", or the error
  */
 QString saveText(const QString& fileName, const QString& html);
 

@@ -37,7 +37,7 @@ namespace
 constexpr const char* NoProxy = "none";
 constexpr int LongestText = 200; // of a value, such as criteria in JSON
 
-/// Whether a panel shows the property, maybe as an advanced one.
+/// Whether a panel shows the property, possibly as an advanced one.
 bool isSetting(vtkSMProperty* property)
 {
   const char* visibility = property->GetPanelVisibility();
@@ -47,7 +47,7 @@ bool isSetting(vtkSMProperty* property)
 
 QString settingsOf(vtkSMProxy* proxy);
 
-/// The proxies of a property: the names of inputs, the settings of others, such as a box.
+/// The proxies of a property: names of inputs, settings of other proxies such as a box.
 QString proxiesOf(vtkSMProperty* property)
 {
   auto* model = pqApplicationCore::instance()->getServerManagerModel();
@@ -65,7 +65,7 @@ QString proxiesOf(vtkSMProperty* property)
   return names.join(", ");
 }
 
-/// The values of a property as the panel shows them.
+/// The values of a property as shown in the panel.
 QString valueOf(vtkSMProperty* property)
 {
   if (vtkSMProxyProperty::SafeDownCast(property))
@@ -99,7 +99,7 @@ QString rawValueOf(vtkSMProperty* property)
   QStringList values;
   for (unsigned int i = 0; i < helper.GetNumberOfElements(); ++i)
   {
-    // No array is chosen: "None", or nothing.
+    // If no array is selected, the value is "None" or empty.
     const QString value = QString::fromStdString(helper.GetAsVariant(i).ToString());
     values << (value == "None" ? QString() : value);
   }
@@ -132,8 +132,8 @@ QString settingsOf(vtkSMProxy* proxy)
   return settings.join("; ");
 }
 
-/// A new proxy of the same kind with the same inputs and file, and all settings as by default. Some
-/// depend on the data; the defaults that a user has chosen do not count.
+/// A new proxy of the same kind with the same inputs and file, and default settings. Some defaults
+/// depend on the data; defaults saved by the user are ignored.
 vtkSmartPointer<vtkSMProxy> defaultOf(vtkSMProxy* proxy)
 {
   vtkSmartPointer<vtkSMProxy> made;
@@ -223,12 +223,12 @@ QStringList changedSettings(pqPipelineSource* source)
         return;
       }
       const QString value = valueOf(property);
-      // Readers may have no array where the default names one that the file does not have.
+      // A reader may have no array if the default array is not in the file.
       if (readsFile && rawValueOf(property).isEmpty())
       {
         return;
       }
-      // Another input than the mesh has no default.
+      // Inputs other than the mesh have no default.
       const bool other = vtkSMInputProperty::SafeDownCast(property);
       const bool changed = other
         ? !value.isEmpty() && value != NoProxy

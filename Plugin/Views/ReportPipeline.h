@@ -18,16 +18,16 @@ class pqPipelineSource;
 namespace tautline
 {
 
-/// The output that a filter has as its property Input; null for sources and several inputs.
+/// The output connected to the property Input of a filter; null for sources and several inputs.
 pqOutputPort* inputOf(pqPipelineSource* source);
 
-/// From the reader or source to the filter, along the inputs.
+/// The pipeline from the reader or source to the filter, along the inputs.
 std::vector<pqPipelineSource*> pipelineOf(pqPipelineSource* source);
 
-/// The name of the file that a reader reads, without its directory; "" of other sources.
+/// The file name of a reader, without its directory; "" for other sources.
 QString fileOf(pqPipelineSource* source);
 
-/// The properties of the panel whose values are not the default, "Label: value" each.
+/// The panel properties with values that are not the defaults, each as "Label: value".
 QStringList changedSettings(pqPipelineSource* source);
 
 } // namespace tautline

@@ -55,8 +55,8 @@ constexpr int FontSize = 14;
 constexpr std::size_t Sides = 2;
 constexpr const char* Caption = "Text";
 
-/// A link of two views that is not registered: ParaView's model of links clears the undo stack
-/// where it gets or loses one.
+/// An unregistered link of two views: ParaView's link model clears the undo stack when a link is
+/// added or removed.
 class ViewLink : public vtkSMCameraLink
 {
 public:
@@ -82,12 +82,12 @@ protected:
 };
 vtkStandardNewMacro(ViewLink);
 
-/// What one press has made. What the user deletes, or Undo, becomes null.
+/// The objects created by one click. Objects that the user or Undo deletes become null.
 struct Comparison
 {
   QPointer<pqPipelineSource> filter;
   bool match = false;
-  /// Those of Match Shape may be sources of the user.
+  /// For Match Shape, they may be sources of the user.
   std::array<QPointer<pqPipelineSource>, Sides> meshes, texts;
   std::array<QPointer<pqView>, Sides> views;
   vtkWeakPointer<ViewLink> link;
@@ -114,7 +114,7 @@ pqOutputPort* inputOf(pqPipelineSource* source)
   return ports.size() == 1 ? ports.front() : nullptr;
 }
 
-/// Element Quality of an output, executed.
+/// An executed Element Quality of an output.
 pqPipelineSource* measure(pqOutputPort* port, const QString& name)
 {
   pqObjectBuilder* builder = pqApplicationCore::instance()->getObjectBuilder();
@@ -141,7 +141,7 @@ QString describe(pqPipelineSource* quality)
   }
   const auto value = [statistics](const char* column)
   { return QString::fromStdString(statistics->GetValueByName(0, column).ToString()); };
-  // The inverse mean ratio of inverted elements is negative: the largest is that of a valid one.
+  // The inverse mean ratio of inverted elements is negative: the largest value is from a valid one.
   const bool valid = value("Inverted") != "0" && value("Metric") == "imr";
   const double worst = statistics->GetValueByName(0, valid ? "Maximum" : "Worst").ToDouble();
   return QString("%1: worst%2 %3 %4, %5 inverted")
@@ -149,7 +149,7 @@ QString describe(pqPipelineSource* quality)
       QString::number(worst, 'g', 3), value("Inverted"));
 }
 
-/// Hides the legend, also that of the bad elements, which are shown after this.
+/// Hides the legend, also of the bad elements, which are shown later.
 void hideLegendLater(vtkSMProxy* shown, pqView* view)
 {
   const vtkSmartPointer<vtkSMProxy> representation = shown;
@@ -189,7 +189,7 @@ pqPipelineSource* addText(const QString& shown, pqPipelineSource* of, pqView* vi
 /// Writes the caption again, unless the user has written another one.
 void refreshCaption(pqPipelineSource* quality, pqPipelineSource* text, QString& last)
 {
-  static bool fetching = false; // reports an update itself
+  static bool fetching = false; // fetching also reports an update
   if (fetching || quality->modifiedState() != pqProxy::UNMODIFIED)
   {
     return;
@@ -214,7 +214,7 @@ void followUpdates(pqPipelineSource* quality, pqPipelineSource* text)
   const auto last = std::make_shared<QString>(
     QString::fromUtf8(vtkSMPropertyHelper(text->getProxy(), Caption).GetAsString()));
   const QPointer<pqPipelineSource> measured = quality;
-  // Fetching updates a pipeline, which is not done within an update.
+  // Fetching updates a pipeline, which is not possible within an update.
   QObject::connect(pqApplicationCore::instance()->getServerManagerModel(),
     &pqServerManagerModel::dataUpdated, text,
     [measured, text, last](pqPipelineSource* updated)
@@ -258,7 +258,7 @@ pqPipelineSource* fill(pqPipelineSource* quality, pqView* view, bool legend)
   return text;
 }
 
-/// The direction of view of another view, if it is one of meshes.
+/// Copies the view direction of another view, if that shows meshes.
 void takeCamera(pqView* view, pqView* other)
 {
   if (qobject_cast<pqRenderView*>(other))
@@ -273,13 +273,13 @@ void takeCamera(pqView* view, pqView* other)
   }
 }
 
-/// Whether the filter finds a shape of one image in another one.
+/// Whether the filter matches a shape from one image in another.
 bool isMatch(pqPipelineSource* filter)
 {
   return filter->getProxy()->GetXMLName() == std::string("MatchShape");
 }
 
-/// What Match Shape has found: the source mesh or, of an image, the one that it makes.
+/// The source of Match Shape: the source mesh or, for an image, the mesh created from it.
 pqPipelineSource* meshOfSource(pqPipelineSource* match)
 {
   pqOutputPort* source = inputOf(match);
@@ -309,7 +309,7 @@ QString linkName(pqPipelineSource* filter)
   return filter->getSMName() + ", before and after";
 }
 
-/// Both views get the camera of the one that is moved, as long as both are there.
+/// Moving the camera of one view moves the other, as long as both exist.
 ViewLink* linkCameras(pqPipelineSource* filter, const std::array<pqView*, Sides>& views)
 {
   const pqScopedUndoExclude notUndone;
@@ -317,7 +317,7 @@ ViewLink* linkCameras(pqPipelineSource* filter, const std::array<pqView*, Sides>
   link->link(views[0]->getProxy(), views[1]->getProxy());
   for (pqView* view : views)
   {
-    // It would keep the other view alive.
+    // A reference would keep the other view alive.
     QObject::connect(view, &QObject::destroyed, [link] { link->RemoveAllLinks(); });
   }
   const std::string name = linkName(filter).toStdString();
@@ -330,7 +330,7 @@ ViewLink* linkCameras(pqPipelineSource* filter, const std::array<pqView*, Sides>
   return link;
 }
 
-/// Two views beside each other in a new layout; null where they cannot be made.
+/// Two views side by side in a new layout; null if they cannot be created.
 std::array<pqView*, Sides> splitLayout(pqServer* server)
 {
   vtkNew<vtkSMParaViewPipelineControllerWithRendering> controller;
@@ -366,7 +366,7 @@ void removeLayout(vtkSMViewLayoutProxy* layout)
   }
 }
 
-/// Removes what is left of a comparison; meshes that the user works with stay.
+/// Removes the rest of a comparison; meshes that the user works with are kept.
 void close(const Comparison& comparison)
 {
   pqObjectBuilder* builder = pqApplicationCore::instance()->getObjectBuilder();
@@ -391,7 +391,7 @@ void close(const Comparison& comparison)
   }
 }
 
-/// A caption goes with its mesh, and all goes with the filter.
+/// A caption is removed with its mesh, and the whole comparison with the filter.
 void sourceRemoved(pqPipelineSource* source)
 {
   for (Comparison& comparison : comparisons())
@@ -410,7 +410,7 @@ void sourceRemoved(pqPipelineSource* source)
         gone.texts[i] = comparison.meshes[i] == source ? comparison.texts[i] : nullptr;
       }
     }
-    // Within a removal no other source is removed.
+    // No other source can be removed during a removal.
     QTimer::singleShot(0, pqApplicationCore::instance(),
       [gone]
       {
@@ -447,7 +447,7 @@ void watchSession()
   }
 }
 
-/// The comparison of a filter if nothing of it was removed; else what is left is removed.
+/// The comparison of a filter if it is complete; otherwise its rest is removed.
 const Comparison* findComparison(pqPipelineSource* filter)
 {
   std::vector<Comparison>& all = comparisons();
@@ -484,7 +484,7 @@ QString showSideBySide(pqPipelineSource* filter)
 {
   if (filter->modifiedState() != pqProxy::UNMODIFIED || !changesMesh(filter))
   {
-    return "Apply the filter first: there is no mesh before and after it.";
+    return "Apply the filter first: there is no result to compare yet.";
   }
   watchSession();
   const pqScopedUndoSet oneStep("Side by Side");
@@ -507,7 +507,7 @@ QString showSideBySide(pqPipelineSource* filter)
   const std::array<pqView*, Sides> views = splitLayout(filter->getServer());
   if (!views[0] || !views[1])
   {
-    return "A layout cannot be made.";
+    return "The layout could not be created.";
   }
   Comparison comparison{ filter, match, {}, {}, {}, {} };
   for (std::size_t i = 0; i < views.size(); ++i)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SideBySide.h
- * @brief The quality of a mesh before and after a filter, in two views beside each other.
+ * @brief The quality of a mesh before and after a filter, in two views side by side.
  */
 
 #ifndef tautline_SideBySide_h
@@ -18,16 +18,15 @@ namespace tautline
 bool changesMesh(pqPipelineSource* filter);
 
 /**
- * @brief Opens a layout with two views: on the left the mesh before the filter, on the right the
- * one after it.
+ * @brief Opens a layout with two views: the mesh before the filter on the left, and after it on
+ * the right.
  *
- * Both are measured by Element Quality, with its default metric. Inverted elements inside are
- * visible.
- * Of Match Shape: on the left the source mesh, on the right what was found, each over its image.
- * The colours mean the same in both views, and the legend is in the right one; the cameras are
- * linked. A text in each view has the worst value and the number of inverted elements. The filter
- * stays the active source.
- * @return "" or what is wrong, with the remedy
+ * Element Quality measures both with its default metric. Inverted elements inside are visible.
+ * For Match Shape, the source mesh is on the left and the match on the right, each over its image.
+ * Both views have the same color scale; the legend is in the right view, and the cameras are
+ * linked. A text in each view shows the worst value and the number of inverted elements. The filter
+ * remains the active source.
+ * @return "", or the error with a fix
  */
 QString showSideBySide(pqPipelineSource* filter);
 

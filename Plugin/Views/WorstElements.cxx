@@ -30,17 +30,19 @@ namespace tautline
 namespace
 {
 
-/// How many elements are listed of an array whose values all elements have.
+/// Number of elements listed for an array that has a value for each element.
 constexpr std::size_t Listed = 10;
-/// Longer lists are no help.
+/// Longer lists are not useful.
 constexpr vtkIdType MostFetched = 10000;
 constexpr double Largest = std::numeric_limits<double>::max();
 constexpr const char* ObstacleArray = "Obstacle";
 
-/// Why an element is not valid, by the values of the array Obstacle of vtkMeshUntangler.
+/// The reason why an element is not valid, by the value of the array Obstacle; without the fixes,
+/// the texts equal the reasons of vtkMeshUntangler.
 constexpr std::array<const char*, 5> obstacles = { "valid",
   "the iterations ended before it became valid", "all its points are fixed",
-  "the fixed points around leave no place for it", "a fixed point of it is not finite" };
+  "the surrounding fixed points leave no valid position for its free ones",
+  "one of its fixed points is NaN or infinite" };
 
 std::string textOf(const std::string& array, double value)
 {
@@ -50,7 +52,7 @@ std::string textOf(const std::string& array, double value)
   return text.str();
 }
 
-/// The lists of the output Worst of Element Quality.
+/// The lists from the output Worst of Element Quality.
 std::vector<WorstElementList> listsOf(vtkPolyData* points)
 {
   std::vector<WorstElementList> lists;
@@ -72,7 +74,7 @@ std::vector<WorstElementList> listsOf(vtkPolyData* points)
     {
       const auto info = std::find_if(known.begin(), known.end(),
         [number](const MetricInfo& one) { return static_cast<int>(one.metric) == number; });
-      lists.push_back(info == known.end() // of a server of another version
+      lists.push_back(info == known.end() // from a server of another version
           ? WorstElementList{ "Metric " + std::to_string(number), "", {}, Ranking::Complete }
           : WorstElementList{ info->label, info->name, {}, Ranking::Complete });
       last = number;
@@ -92,14 +94,14 @@ vtkPVArrayInformation* cellArray(pqOutputPort* port, const char* name)
   return port->getDataInformation()->GetArrayInformation(name, vtkDataObject::CELL);
 }
 
-/// The place of an array among those of some cells; they have it.
+/// The index of an array among the arrays of some cells, which must have it.
 std::size_t placeOf(const ElementValues& cells, const std::string& array)
 {
   return static_cast<std::size_t>(
     std::find(cells.arrays.begin(), cells.arrays.end(), array) - cells.arrays.begin());
 }
 
-/// The elements of which an array has values in an interval.
+/// The elements whose values of an array are in an interval.
 std::vector<WorstElementEntry> entriesIn(pqOutputPort* port, const CellInterval& interval)
 {
   std::vector<WorstElementEntry> entries;
@@ -153,7 +155,7 @@ void addExtreme(pqOutputPort* port, WorstElementList& list)
     return largest ? CellInterval{ list.array, value, Largest }
                    : CellInterval{ list.array, -Largest, value };
   };
-  // Bisection for a threshold that few, but enough, elements exceed.
+  // Bisection for a threshold that enough elements exceed, but not many.
   constexpr int steps = 30;
   constexpr vtkTypeInt64 enoughFetched = 200;
   double enough = range[largest ? 0 : 1], tooFew = range[largest ? 1 : 0];
@@ -174,7 +176,7 @@ void addExtreme(pqOutputPort* port, WorstElementList& list)
   list.elements.resize(std::min(Listed, list.elements.size()));
 }
 
-/// "partition 2 of block 3" of a table, as the parts of a name.
+/// Parses "partition 2 of block 3" from a table into the parts of a name.
 ElementName inBlock(vtkIdType cell, const std::string& text)
 {
   ElementName name = { cell, -1, -1, 0 };
@@ -265,7 +267,7 @@ std::vector<WorstElementList> worstElementsOf(pqPipelineSource* source)
   {
     lists.push_back(obstaclesOf(mesh));
   }
-  // Other filters pass on the array of their input, which is out of date.
+  // Other filters pass through the array of their input, which is out of date.
   const std::string filter = source->getProxy()->GetXMLName();
   vtkPVArrayInformation* validity = cellArray(mesh, "Validity");
   if ((filter == "MeshOptimizer" || filter == "MeshWarp") && validity &&

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file WorstElements.h
- * @brief The elements of a filter's output that a user should look at, the worst first.
+ * @brief The elements of a filter's output that need attention, worst first.
  */
 
 #ifndef tautline_WorstElements_h
@@ -17,7 +17,7 @@ class pqPipelineSource;
 namespace tautline
 {
 
-/// An element, and what is wrong with it.
+/// An element and its defect.
 struct WorstElementEntry
 {
   ElementName name;
@@ -25,16 +25,16 @@ struct WorstElementEntry
   std::string text; ///< "imr -2.1, inverted"
 };
 
-/// How the elements of a list are found in the mesh.
+/// Criterion that finds the elements of a list in the mesh.
 enum class Ranking
 {
-  Complete, ///< they were found
+  Complete, ///< already found
   Invalid,  ///< inverted or degenerate, by the array Validity
   Largest,  ///< with the largest values of the array
   Smallest
 };
 
-/// Elements by one measure, the worst first.
+/// Elements by one measure, worst first.
 struct WorstElementList
 {
   std::string label; ///< of the measure, for a menu: "Inverse mean ratio"
@@ -42,22 +42,23 @@ struct WorstElementList
   std::vector<WorstElementEntry> elements;
   Ranking ranking = Ranking::Complete; ///< otherwise completeList() adds the elements
 
-  /// Whether the largest values of the array are the worst, not the smallest.
+  /// Whether the largest values of the array are the worst; otherwise the smallest.
   bool largestIsWorst() const;
 };
 
 /**
- * @brief The lists of a filter that was executed.
+ * @brief The lists of an executed filter.
  *
- * Element Quality: one per metric, of its output Worst. Untangle Mesh: the elements that are not
- * valid, of the array Obstacle. Improve Mesh: those of its output Remaining, and by both measures.
- * Optimize Mesh, Warp Mesh: the invalid ones, if any. Optimize Mesh, Compare Meshes: by each metric
- * that was measured before and after. Condition Estimator: the largest Share and Excess.
- * None for other filters, and before the first execution.
+ * Element Quality: one list per metric, from its output Worst. Untangle Mesh: the elements that are
+ * not valid, from the array Obstacle. Improve Mesh: the elements in its output Remaining, and a
+ * list for each of its two measures. Optimize Mesh, Warp Mesh: the invalid elements, if any.
+ * Optimize Mesh, Compare Meshes: one list per metric measured before and after. Condition
+ * Estimator: the largest Share and Excess. Other filters, and filters before their first execution,
+ * have no lists.
  */
 std::vector<WorstElementList> worstElementsOf(pqPipelineSource* source);
 
-/// Finds the elements of a list that is not complete, which takes a while in a large mesh.
+/// Finds the elements of an incomplete list, which is slow for a large mesh.
 void completeList(pqPipelineSource* source, WorstElementList& list);
 
 } // namespace tautline

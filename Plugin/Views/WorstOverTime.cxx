@@ -49,7 +49,7 @@ vtkSMViewProxy* newChart(pqServer* server)
   return chart;
 }
 
-/// Leaves the series visible whose names begin so.
+/// Shows only the series whose names start with the given text.
 void showSeries(vtkSMProxy* shown, const std::string& beginning)
 {
   vtkSMPropertyHelper visible(shown, Series, true);
@@ -75,7 +75,7 @@ std::string plotWorstOverTime(pqOutputPort* mesh, const std::string& array, bool
 {
   if (!hasTimeSteps(mesh))
   {
-    return "There is one time step: open a time series, or switch Animation on.";
+    return "There is only one time step: open a time series, or switch Animation on.";
   }
   const pqScopedUndoSet oneStep("Plot Worst over Time");
   pqPipelineSource* plot = pqApplicationCore::instance()->getObjectBuilder()->createFilter(

@@ -15,15 +15,15 @@ namespace tautline
 {
 
 /**
- * @brief Adds ParaView's Plot Data Over Time of a mesh, and shows the extreme of an array in a
- * chart.
+ * @brief Applies ParaView's Plot Data Over Time to a mesh, and shows the worst value of an array in
+ * a chart.
  * @param array a cell array of the mesh
  * @param largest whether the largest value is the worst, otherwise the smallest
- * @return "" or what is wrong, with the remedy; then nothing changes.
+ * @return "", or the error with a fix; then nothing changes.
  */
 std::string plotWorstOverTime(pqOutputPort* mesh, const std::string& array, bool largest);
 
-/// Whether the server has time steps to plot over.
+/// Whether the server has several time steps to plot.
 bool hasTimeSteps(pqOutputPort* mesh);
 
 } // namespace tautline

@@ -30,17 +30,17 @@ namespace
 {
 constexpr double FadedOpacity = 0.2;
 constexpr const char* Opacity = "Opacity";
-/// Property of a representation made translucent: its opacity before.
+/// Property of a representation made translucent: its previous opacity.
 constexpr const char* Before = "TautlineOpacityBefore";
 constexpr double EdgeColor[3] = { 0.1, 0.1, 0.1 };
 constexpr const char* Style = "Representation";
 constexpr const char* WorstPort = "Worst";
 constexpr double WorstSize = 12.0; // pixels
 
-/// Cell array of the mesh where it has curved cells.
+/// Cell array of a mesh with curved cells.
 constexpr const char* CurvedArray = "MinimumPoint";
 constexpr const char* Subdivision = "NonlinearSubdivisionLevel";
-/// Subdivisions of an edge, 2^3, with which it looks curved; ParaView's default is one.
+/// Subdivision level at which an edge looks curved (2^3 parts); ParaView's default is one.
 constexpr int CurvedLevel = 3, DefaultLevel = 1;
 /// Property of a representation whose edges were made to look curved.
 constexpr const char* Refined = "TautlineRefined";
@@ -173,7 +173,7 @@ void pqTautlineBadElements::arrange(pqPipelineSource* source)
     {
       refine(mesh);
       refine(elements);
-      // Where the determinant of the worst curved cells is smallest, which their faces hide.
+      // The smallest determinants of the worst curved cells, hidden by the faces of the cells.
       if (some && worst && mesh->isVisible() && !points)
       {
         vtkNew<vtkSMParaViewPipelineControllerWithRendering> controller;

@@ -4,15 +4,15 @@
  * @brief Shows the bad elements inside a mesh: the mesh around them becomes translucent.
  *
  * Element Quality has an output with the bad elements of a volume mesh. This object, started by the
- * plugin in the GUI, draws it with the mesh and makes the mesh translucent when there are such
- * elements, and opaque again when there are none or the output is switched off. An opacity that the
- * user set is kept. The output Worst is drawn as spheres, in a translucent mesh, too. With
- * criteria, the legend of the mesh has labels at their limits. The sections of Solve PDE are shown
- * in the same way.
+ * plugin in the GUI, draws it with the mesh. It makes the mesh translucent if there are such
+ * elements, and opaque again if there are none or the output is switched off. An opacity set by the
+ * user is kept. The output Worst is drawn as spheres, also in a translucent mesh. With criteria,
+ * the legend of the mesh has labels at their limits. The sections of Solve PDE are shown in the
+ * same way.
  *
  * The edges of curved cells are subdivided so that they look curved (unless the user has changed
- * Nonlinear Subdivision Level), and where such a mesh has bad elements, Worst is shown as well: its
- * spheres are where the Jacobian determinant is smallest.
+ * Nonlinear Subdivision Level). If such a mesh has bad elements, Worst is also shown: its spheres
+ * mark the smallest Jacobian determinants.
  */
 
 #ifndef pqTautlineBadElements_h

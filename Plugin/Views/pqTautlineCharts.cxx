@@ -45,7 +45,7 @@
 namespace
 {
 constexpr const char *LeftAxis = "0", *RightAxis = "1"; // vtkChart: BOTTOM_LEFT, BOTTOM_RIGHT
-/// As in the dock of the run.
+/// As in the run dock.
 constexpr std::array<const char*, 3> LeftColor = { "0.12", "0.47", "0.71" };
 constexpr std::array<const char*, 3> RightColor = { "0.84", "0.38", "0.06" };
 constexpr const char* Visibility = "SeriesVisibility";
@@ -69,8 +69,8 @@ struct Column
   double smallest, largest;
 };
 
-/// Whether a logarithmic axis shows a column: not values of 0, as an objective of untangling ends
-/// at, and VTK draws no line where the logarithms differ by less than a hundredth of themselves.
+/// Whether a logarithmic axis can show a column. It cannot show 0, the final objective of
+/// untangling, and VTK draws no line if the logarithms differ by less than one percent.
 bool suitsLogarithms(const Column& column)
 {
   constexpr double leastDifference = 0.02;
@@ -110,7 +110,7 @@ void setSeries(vtkSMProxy* chart, const char* property, const std::string& name,
   }
 }
 
-/// The colour of a series: red, green and blue from 0 to 1, as the property has them.
+/// The color of a series: red, green and blue from 0 to 1, as in the property.
 void setColor(vtkSMProxy* chart, const std::string& name, const std::array<const char*, 3>& rgb)
 {
   constexpr unsigned int perSeries = 4; // the name and the three values
@@ -132,7 +132,8 @@ void setTitle(vtkSMProxy* view, const char* axis, const char* title)
   vtkSMPropertyHelper(view, axis).Set(title);
 }
 
-/// The objective on the left; on the right the worst element of each metric, or the inverted ones.
+/// The objective on the left axis; the worst element of each metric, or the inverted ones, on the
+/// right axis.
 void arrangeObjective(
   vtkSMProxy* chart, vtkSMProxy* view, const std::vector<Column>& columns, const Column& objective)
 {
@@ -218,7 +219,7 @@ void arrangeDistribution(vtkSMProxy* chart, vtkSMProxy* view, const std::vector<
   }
 }
 
-/// The chart that a view draws on this computer.
+/// The chart drawn by a view on this computer.
 vtkChartXY* drawnChart(vtkSMProxy* view)
 {
   auto* context = vtkSMContextViewProxy::SafeDownCast(view);
@@ -226,14 +227,14 @@ vtkChartXY* drawnChart(vtkSMProxy* view)
 }
 
 /**
- * Names below the bars are read from below, since bars are narrower than names, and the bars have
- * gaps: vtkChartXY makes them as wide as a fraction of the distance of the first two rows, which
- * for ranks is any whole number.
+ * The names below the bars are vertical, because they are longer than the bars are wide. The bars
+ * have gaps: vtkChartXY sets their width to a fraction of the distance between the first two rows,
+ * which can be any whole number for ranks.
  */
 void drawStudy(vtkSMProxy* view, vtkAbstractArray* ranks)
 {
   constexpr double upwards = 90.0; // degrees
-  constexpr double barWidth = 0.8; // of the distance of two bars
+  constexpr double barWidth = 0.8; // of the distance between two bars
   vtkChartXY* drawn = drawnChart(view);
   if (!drawn)
   {
@@ -247,7 +248,7 @@ void drawStudy(vtkSMProxy* view, vtkAbstractArray* ranks)
   {
     const int distance =
       std::abs(ranks->GetVariantValue(1).ToInt() - ranks->GetVariantValue(0).ToInt());
-    // Blocks have ranks of their own: the first two of different ones may be equal.
+    // Each block has its own ranks: the first two, from different blocks, may be equal.
     drawn->SetBarWidthFraction(static_cast<float>(barWidth / std::max(distance, 1)));
   }
 }
@@ -307,7 +308,7 @@ void pqTautlineCharts::added(pqRepresentation* shown)
   {
     return;
   }
-  // The representation has its input later, the proxy has it already.
+  // The representation gets its input later; the proxy already has it.
   auto* source = model()->findItem<pqPipelineSource*>(
     vtkSMPropertyHelper(chart->getProxy(), "Input", true).GetAsProxy());
   if (!source || !tautline::isTautline(source->getProxy()))
@@ -323,7 +324,7 @@ void pqTautlineCharts::added(pqRepresentation* shown)
         &pqTautlineCharts::applied, Qt::UniqueConnection);
     }
   }
-  // After ParaView has set the defaults, and added the representation to a view.
+  // After ParaView has set the defaults and added the representation to a view.
   QTimer::singleShot(0, this,
     [this, chart]
     {
@@ -337,7 +338,7 @@ void pqTautlineCharts::added(pqRepresentation* shown)
 //------------------------------------------------------------------------------
 void pqTautlineCharts::applied()
 {
-  // Within Apply, even where it processes events, ParaView has lists of the views.
+  // During Apply, even while it processes events, ParaView keeps lists of the views.
   QTimer::singleShot(0, this,
     [this]
     {
@@ -363,7 +364,7 @@ void pqTautlineCharts::updated(pqPipelineSource* source)
   {
     return;
   }
-  // Another run has other ranks. Fetching updates a pipeline: after the update.
+  // Another run has other ranks. Fetching updates a pipeline, so it follows the update.
   const QPointer<pqPipelineSource> study = source;
   QTimer::singleShot(0, this,
     [this, study]

@@ -3,13 +3,13 @@
  * @class pqTautlineCharts
  * @brief Sets up the charts of Tautline's outputs when they are shown for the first time.
  *
- * History: the objective on a left axis, logarithmic if possible, the other series on the right
- * axis, since their magnitudes differ. Distribution: the counts over the values of the metric
- * instead of the numbers of the rows. Study: the times in the order of the ranks, with the names
- * of the combinations. After Apply, the view of the mesh is active again, not the chart that was
- * added: the mesh of the next filter then appears there. A filter that refuses its input opens no
- * chart; it does once it has a result. A run that the dock draws opens none. The charts of a
- * loaded state stay as they are. The plugin starts the object in the GUI.
+ * History: the objective on the left axis, logarithmic if possible, and the other series on the
+ * right axis, because their magnitudes differ. Distribution: the counts over the values of the
+ * metric instead of the row numbers. Study: the times in the order of the ranks, with the names of
+ * the combinations. After Apply, the view of the mesh is active again, not the added chart: the
+ * mesh of the next filter then appears there. A filter that rejects its input opens no chart until
+ * it has a result. A run drawn by the dock opens none. The charts of a loaded state remain
+ * unchanged. The plugin starts the object in the GUI.
  */
 
 #ifndef pqTautlineCharts_h
@@ -45,7 +45,7 @@ private Q_SLOTS:
 private:
   void arrange(pqDataRepresentation* chart);
 
-  /// What the first Apply of filters has shown: charts among them may be needless.
+  /// Displays opened by the first Apply of filters; charts among them may be unnecessary.
   QList<QPointer<pqDataRepresentation>> OpenedByApply;
 };
 

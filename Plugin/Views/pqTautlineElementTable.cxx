@@ -29,7 +29,7 @@ enum Columns
 constexpr int ElementRole = Qt::UserRole; ///< the number of the element in the list
 constexpr int Digits = 6;
 
-/// A cell that is sorted by its number, not by its text.
+/// A table cell that is sorted by its number, not by its text.
 class NumberItem : public QTableWidgetItem
 {
 public:
@@ -37,7 +37,7 @@ public:
     : QTableWidgetItem(QString::number(value, 'g', Digits))
     , Value(value)
   {
-    constexpr double exact = 1e15; // as whole numbers: ids
+    constexpr double exact = 1e15; // for integers such as ids
     if (std::floor(value) == value && std::abs(value) < exact)
     {
       this->setText(QString::number(value, 'f', 0));
@@ -55,7 +55,7 @@ private:
   double Value;
 };
 
-/// The order of the columns: the array of the list is the first.
+/// The order of the columns: the array of the list comes first.
 std::vector<std::size_t> arrayOrder(const tautline::ElementValues& cells, const std::string& first)
 {
   std::vector<std::size_t> order;
@@ -82,7 +82,7 @@ pqTautlineElementTable::pqTautlineElementTable(QWidget* parentObject)
   const int rowHeight = this->fontMetrics().height() + spacing;
   this->Table->verticalHeader()->setDefaultSectionSize(rowHeight);
   this->Table->horizontalHeader()->setToolTip("Click to sort by this column.");
-  // A few rows: the mesh needs the space.
+  // Only a few rows: the mesh needs the space.
   constexpr int leastRows = 3;
   this->Table->setMinimumHeight((leastRows + 1) * rowHeight);
   this->setWidget(this->Table);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class pqTautlineElementTable
- * @brief The list of the worst elements as a table that can be sorted by each column.
+ * @brief The list of worst elements as a table that can be sorted by any column.
  *
- * A row has the rank, the number of the cell, its block, what is wrong with it, and the values of
- * the cell arrays of the output: metrics, grade, ids of the file. A click on a row selects the
- * element. The tool bar of the worst elements makes and fills the dock.
+ * A row shows the rank, the cell number, its block, its defect, and the values of the cell arrays
+ * of the output: metrics, grade, ids from the file. A click on a row selects the element. The
+ * toolbar of the worst elements creates and fills the dock.
  */
 
 #ifndef pqTautlineElementTable_h
@@ -24,7 +24,7 @@ class pqTautlineElementTable : public QDockWidget
   using Superclass = QDockWidget;
 
   ///@{
-  /// For tests: the titles of the columns, and the texts of the first row shown; with "; ".
+  /// For tests: the column titles, and the texts of the first visible row, joined with "; ".
   Q_PROPERTY(QString titles READ titles)
   Q_PROPERTY(QString firstRow READ firstRow)
   ///@}
@@ -44,7 +44,7 @@ public:
 Q_SIGNALS:
   /// The user chose an element of the list.
   void chosen(int element);
-  /// The dock appeared: it is to be filled.
+  /// The dock appeared and must be filled.
   void shown();
 
 private:

@@ -39,7 +39,7 @@ pqTautlineNavigator::pqTautlineNavigator(QWidget* parentObject)
 {
   this->setObjectName("TautlineNavigator");
   this->Measure->setObjectName("Measure");
-  this->Measure->setToolTip("What the worst elements are the worst by.");
+  this->Measure->setToolTip("The measure that ranks the worst elements.");
   constexpr int fewestLetters = 11;
   this->Measure->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
   this->Measure->setMinimumContentsLength(fewestLetters);
@@ -59,11 +59,10 @@ pqTautlineNavigator::pqTautlineNavigator(QWidget* parentObject)
   };
   this->addWidget(this->Measure);
   this->Previous =
-    add("Previous", "previous", "P", "Select the element before in the list of the worst.");
-  this->Next = add("Next", "next", "N", "Select the next of the worst elements.");
-  this->Zoom = add("Zoom", "zoom", "Z", "Move the camera to the element selected.");
-  this->Isolate =
-    add("Isolate", "isolate", "I", "Fade the mesh, so that an element inside is visible.");
+    add("Previous", "previous", "P", "Select the previous one of the worst elements.");
+  this->Next = add("Next", "next", "N", "Select the next one of the worst elements.");
+  this->Zoom = add("Zoom", "zoom", "Z", "Move the camera to the selected element.");
+  this->Isolate = add("Isolate", "isolate", "I", "Fade the mesh to show an element inside it.");
   this->addWidget(this->Layers);
   QAction* table = add(
     "Table", "table", "T", "Show the worst elements as a table with the values of all metrics.");
@@ -71,8 +70,7 @@ pqTautlineNavigator::pqTautlineNavigator(QWidget* parentObject)
   QAction* shown = this->Table->toggleViewAction();
   QObject::connect(table, &QAction::toggled, this->Table, &QWidget::setVisible);
   QObject::connect(shown, &QAction::toggled, table, &QAction::setChecked);
-  this->OverTime =
-    add("OverTime", "time", "O", "Plot the worst value of all elements over the time steps.");
+  this->OverTime = add("OverTime", "time", "O", "Plot the worst value of all elements over time.");
   this->addWidget(this->Element);
   this->Zoom->setCheckable(true);
   this->Zoom->setChecked(true);
@@ -132,11 +130,11 @@ void pqTautlineNavigator::sourceChanged(pqPipelineSource* source)
   this->Source = source;
   if (source)
   {
-    // A warning opens a window during the update: the state follows that of the data.
+    // A warning opens a window during the update: the state changes after the data.
     QObject::connect(
       source, &pqProxy::modifiedStateChanged, this, [this] { this->dataUpdated(this->Source); });
   }
-  // A filter that is being made has the state of one that was applied; fetching would execute it.
+  // A filter being created has the same state as an applied one; fetching would execute it.
   this->Lists.clear();
   this->Measure->clear();
   this->listChanged();
@@ -148,7 +146,7 @@ void pqTautlineNavigator::dataUpdated(pqPipelineSource* source)
 {
   if (source == this->Source)
   {
-    // After the update: fetching updates a pipeline itself.
+    // After the update, because fetching also updates a pipeline.
     QTimer::singleShot(0, this, &pqTautlineNavigator::refresh);
   }
 }
@@ -235,7 +233,7 @@ void pqTautlineNavigator::placeTable()
   {
     return;
   }
-  // In the place of the run: two docks side by side are too narrow on small screens.
+  // In the area of the run dock: two docks side by side are too narrow on small screens.
   const bool beside = !window->tabifiedDockWidgets(run).contains(this->Table);
   if (beside && !run->isHidden() && !run->isFloating() &&
     window->dockWidgetArea(run) == window->dockWidgetArea(this->Table))
@@ -298,7 +296,7 @@ void pqTautlineNavigator::describe(const std::string& problem)
     text += entry.name.block < 0 ? QString() : QString(" of block %1").arg(entry.name.block);
     text += ", " + QString::fromStdString(entry.text);
   }
-  // No longer than the place for it: the tool bar shares a row.
+  // Shortened to the available width: the toolbar shares a row.
   this->Element->setToolTip(text);
   this->Element->setText(text);
 }

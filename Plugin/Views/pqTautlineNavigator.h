@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class pqTautlineNavigator
- * @brief The tool bar that goes from one bad element to the next.
+ * @brief The toolbar that steps from one bad element to the next.
  *
- * It shows the worst elements of the active filter of the pipeline, by a measure to choose; see
+ * It shows the worst elements of the active filter of the pipeline, by a selectable measure; see
  * tautline::worstElementsOf() for the lists. Previous and Next select an element and, if Zoom is
- * on, move the camera to it. Table shows the list in a dock, Over Time plots the worst value of a
- * time series. Isolate shows the mesh faded with its edges, and the element with layers of its
- * neighbors, so that it is visible inside a solid; its value stands beside it. "3 of 10: cell 433,
- * imr -2.1, inverted" is the element selected.
+ * on, move the camera to it. Table shows the list in a dock; Over Time plots the worst value of a
+ * time series. Isolate fades the mesh and shows its edges, and shows the element with layers of its
+ * neighbors, so that it is visible inside a solid; its value appears beside it. A text such as
+ * "3 of 10: cell 433, imr -2.1, inverted" describes the selected element.
  */
 
 #ifndef pqTautlineNavigator_h
@@ -47,14 +47,14 @@ private Q_SLOTS:
   void isolate(bool on);
   void plotOverTime();
   void fillTable();
-  /// Puts the table on the dock of the run, if that is shown at the same place.
+  /// Puts the table in a tab with the run dock, if both are in the same area.
   void placeTable();
-  /// Selects an element; numbers count around.
+  /// Selects an element; numbers wrap around.
   void go(int element);
 
 private:
   const tautline::WorstElementList* list() const;
-  /// Finds the elements of the current list, if they were not found yet.
+  /// Finds the elements of the current list, if it is not complete yet.
   void complete();
   void describe(const std::string& problem = {});
 

@@ -42,7 +42,7 @@ constexpr int MeshPort = 0;
 constexpr const char* SheetPort = "Sheet"; // of Shape Retrieval
 constexpr const char* ListReader = "SilhouetteSetReader";
 constexpr double MeshOpacity = 0.6;
-constexpr double Behind = 1e-3; // distance of the image from the mesh, of its size
+constexpr double Behind = 1e-3; // distance of the image from the mesh, relative to its size
 
 pqServerManagerModel* model()
 {
@@ -50,13 +50,13 @@ pqServerManagerModel* model()
   return core ? core->getServerManagerModel() : nullptr;
 }
 
-/// Whether the display of a proxy is changed: the reader is no entry of our menu.
+/// Whether the display of a proxy is changed; the reader is not in the Tautline menu.
 bool isArranged(vtkSMProxy* proxy)
 {
   return tautline::isTautline(proxy) || std::string(proxy->GetXMLName()) == ListReader;
 }
 
-/// The port of the filter that has the image in which the mesh was found, or null.
+/// The output with the image in which the mesh was found, or null.
 pqOutputPort* imageOf(pqPipelineFilter* filter)
 {
   const std::string name = filter->getProxy()->GetXMLName();
@@ -66,7 +66,7 @@ pqOutputPort* imageOf(pqPipelineFilter* filter)
   return ports.isEmpty() ? nullptr : ports.front();
 }
 
-/// The array of the pixels, or null; of several images the first array, as they have no scalars.
+/// The pixel array, or null; for several images, which have no scalars, the first array.
 vtkPVArrayInformation* pixelsOf(pqOutputPort* image)
 {
   auto* arrays = image->getDataInformation()->GetPointDataInformation();
@@ -74,7 +74,7 @@ vtkPVArrayInformation* pixelsOf(pqOutputPort* image)
   return scalars || arrays->GetNumberOfArrays() == 0 ? scalars : arrays->GetArrayInformation(0);
 }
 
-/// Draws the colours of a picture as they are, without a legend.
+/// Draws a picture in its own colors, without a legend.
 void showColors(pqDataRepresentation* shown, const char* representation, const char* array)
 {
   vtkSMProxy* picture = shown->getProxy();
@@ -88,7 +88,7 @@ void showColors(pqDataRepresentation* shown, const char* representation, const c
   }
 }
 
-/// Bytes are drawn as they are, grey values or colours; other `pixels` by a colour map.
+/// Bytes are drawn directly as gray values or colors; other `pixels` with a color map.
 void moveBehind(vtkSMProxy* image, const double bounds[6], int pixels)
 {
   if (image->GetProperty("Representation") && image->GetProperty(tautline::TranslationProperty))

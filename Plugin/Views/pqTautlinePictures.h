@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class pqTautlinePictures
- * @brief Shows images in their colours, behind a mesh that was found in them, and regions by name.
+ * @brief Shows images in their colors, behind a mesh found in them, and regions by name.
  *
  * When the output of Match Shape or Silhouette to Mesh is shown for the first time, its image is
- * shown, too, in the grey values or colours of its pixels and a little behind the mesh, which is
- * translucent. The sheet of Shape Retrieval and a list of silhouettes are shown in their colours,
- * without a legend. A domain and its interaction layer have the colours and names of categories
- * (RegionLegend.h). Only the displays are changed, not the data; those of a loaded state stay as
- * they are. The plugin starts the object in the GUI.
+ * also shown, in the gray values or colors of its pixels and slightly behind the mesh, which is
+ * translucent. The sheet of Shape Retrieval and a list of silhouettes are shown in their colors,
+ * without a legend. A domain and its interaction layer have the colors and names of categories
+ * (RegionLegend.h). Only the displays are changed, not the data; displays of a loaded state remain
+ * unchanged. The plugin starts the object in the GUI.
  */
 
 #ifndef pqTautlinePictures_h

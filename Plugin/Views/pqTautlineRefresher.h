@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class pqTautlineRefresher
- * @brief Shows the results of the run just made: Summary, Notice and the numbers of a panel.
+ * @brief Shows the results of the latest run: Summary, Notice and the numbers of a panel.
  *
- * ParaView updates the information properties of a filter when its panel is built or applied. Apply
- * however comes before the filter runs, so that a panel shows the results of the run before. This
- * object, started by the plugin in the GUI, updates the information properties of Tautline's
- * proxies whenever their data were updated. Other proxies are left alone.
+ * ParaView updates the information properties of a filter when its panel is built or applied.
+ * However, Apply precedes the run of the filter, so a panel would show the results of the previous
+ * run. This object, started by the plugin in the GUI, updates the information properties of
+ * Tautline's proxies after each update of their data. Other proxies are unchanged.
  */
 
 #ifndef pqTautlineRefresher_h
