@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """make_metrics.py [--write] [--pictures]: what is generated from the registry of metrics.
 
-The sections of the page metrics.md (from metrics.md.in, with the formulas of formulas.json) and the list of metrics that the panels include,
-ServerManager/Snippets/MetricDomain.xml. Without an option, compares and exits with 1 if they differ, if README.md
-has another number of metrics, or if a panel has a list of its own; --write writes them; --pictures draws
-metric_<name>.png with vtkMetricField.
+The sections of the page metrics.md (from metrics.md.in, with the formulas of formulas.json) and the list of metrics
+that the panels include, ServerManager/Snippets/MetricDomain.xml. Without an option, compares and exits with 1 if they
+differ, if README.md has another number of metrics, or if a panel has a list of its own; --write writes them; --pictures
+draws metric_<name>.png with vtkMetricField.
 Needs the package tautline: eval "$(./run env)" first.
 """
 
@@ -58,8 +58,8 @@ def table(head: list, rows: list) -> str:
 def overview(metrics: list) -> str:
     """A row for each metric, with a link to its section."""
     rows = [
-        [f"[{text(m['label'])}](#{m['name']})", f"`{m['name']}`", by_dimension(m, "acceptable"), by_dimension(m, "ideal"),
-         text(m["cell types"])]
+        [f"[{text(m['label'])}](#{m['name']})", f"`{m['name']}`",
+         by_dimension(m, "acceptable"), by_dimension(m, "ideal"), text(m["cell types"])]
         for m in metrics
     ]  # fmt: skip
     return table(["Metric", "Array", "Acceptable", "Ideal", "Cells"], rows)

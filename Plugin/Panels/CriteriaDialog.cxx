@@ -48,7 +48,7 @@ QString textOf(const QJsonValue& value)
   return value.isDouble() ? QString::number(value.toDouble(), 'g', 12) : QString();
 }
 
-/// A number, or the text itself, which the kernel refuses by name.
+/// A number, or the text itself, which the kernel rejects by name.
 QJsonValue valueOf(const QString& text)
 {
   bool isNumber = false;
@@ -167,7 +167,7 @@ void CriteriaDialog::insertRow(
 //------------------------------------------------------------------------------
 void CriteriaDialog::addRow()
 {
-  // The limits of a row are those of the preset for the first metric; they are to be edited.
+  // A new row has the preset limits of the first metric, to be edited.
   this->insertRow(this->Metrics.first(), "all", "1", { "1", "1.5", "3", "10", "100" });
   this->check();
 }

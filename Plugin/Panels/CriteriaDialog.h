@@ -4,7 +4,7 @@
  * @brief Edits quality criteria in a table: a row per metric and cell type.
  *
  * The columns are metric, cell type ("all" or one), weight and the five limits. Criteria that the
- * kernel refuses cannot be accepted: what is wrong is shown below the table.
+ * kernel rejects cannot be accepted: the problem is shown below the table.
  */
 
 #ifndef tautline_CriteriaDialog_h

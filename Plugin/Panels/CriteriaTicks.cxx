@@ -30,7 +30,7 @@ QualityCriteria parsed(const std::string& text)
   return parseCriteria(preset ? presetCriteria(text) : text);
 }
 
-/// The name of the array that the mesh is coloured by, or "".
+/// The name of the array that the mesh is colored by, or "".
 std::string coloredBy(vtkSMProxy* shown)
 {
   constexpr int arrayName = 4; // of the five parts of the property

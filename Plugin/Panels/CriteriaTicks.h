@@ -25,8 +25,8 @@ std::vector<double> criteriaLimits(const std::string& criteria, const std::strin
 
 /**
  * @brief Labels the legend of a mesh by the limits of the criteria that lie in the range of its
- * colours, and by the ends of the range. Without criteria for the metric, gives it back ParaView's
- * labels, if it had those of criteria.
+ * colors, and by the ends of the range. Without criteria for the metric, restores ParaView's labels
+ * if the legend had labels of criteria.
  * @param shown the mesh, an output of `quality`
  * @param quality the filter with the property Criteria
  */

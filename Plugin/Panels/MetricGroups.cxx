@@ -18,7 +18,7 @@ struct Purpose
   std::vector<Metric> metrics;
 };
 
-/// All built-in metrics, except those of finite volumes.
+/// All built-in metrics, except the metrics of finite volumes.
 const std::vector<Purpose>& purposes()
 {
   static const std::vector<Purpose> all = {
@@ -33,14 +33,14 @@ const std::vector<Purpose>& purposes()
     { "Solver", "The condition number of the stiffness matrix and the error of interpolation.",
       { M::ConditioningScaleInvariant, M::ConditioningSizeShape, M::InterpolationScaleInvariant,
         M::InterpolationSizeShape } },
-    { "Target, shape", "The shape against that of a target element.",
+    { "Target, shape", "The shape, compared with a target element.",
       { M::ShapeSimilarity, M::ShapeBarrier, M::ShapeNonBarrier, M::ShapeCondition,
         M::ShapeConditionSquared, M::ShapeSquared, M::ShapeProduct, M::ShapeCubic } },
-    { "Target, size", "The size against that of a target element.",
+    { "Target, size", "The size, compared with a target element.",
       { M::SizeBarrier, M::SizeNonBarrier, M::SizeBarrierSquared, M::SizeUntangle } },
-    { "Target, shape and size", "The shape and the size against those of a target element.",
+    { "Target, shape and size", "The shape and the size, compared with a target element.",
       { M::ShapeSizeBarrier, M::ShapeSizeAdjugate, M::ShapeSizeWeighted, M::ShapeSizeLogarithm } },
-    { "Target, with orientation", "The orientation in space against that of a target element.",
+    { "Target, with orientation", "The orientation in space, compared with a target element.",
       { M::ShapeOrientationBarrier, M::ShapeOrientation, M::ShapeSizeOrientationBarrier,
         M::ShapeSizeOrientation } },
   };

@@ -18,13 +18,13 @@ struct MetricGroup
 {
   std::string title;
   std::string purpose;      ///< the tool tip of the title
-  std::vector<int> metrics; ///< numbers, those of most use first
+  std::vector<int> metrics; ///< numbers, the most useful first
 };
 
 /**
  * @brief Sorts metrics by purpose. Each is in one group; groups without any are left out.
- * @param metrics the numbers of the metrics; those of registered metrics, and numbers that the
- * client has no facts of, are in the last group
+ * @param metrics the numbers of the metrics; registered metrics, and numbers about which the
+ * client has no facts, are in the last group
  */
 std::vector<MetricGroup> groupMetrics(const std::vector<int>& metrics);
 

@@ -13,7 +13,7 @@ namespace tautline
 {
 namespace
 {
-/// Whether the client has the facts of a metric: not those of a server of another version.
+/// Whether the client has the facts of a metric; a server of another version may have other ones.
 bool isKnown(int metric)
 {
   const std::vector<MetricInfo>& known = metricRegistry();

@@ -22,7 +22,7 @@ std::string metricReason(int metric);
  */
 std::string targetReason(int metric, int target);
 
-/// Why a template does not suit a metric; "" if it does. Template -1 is that of the metric.
+/// Why a template does not suit a metric; "" if it does. Template -1 is the default of the metric.
 std::string templateReason(int metric, int objectiveTemplate);
 
 /**

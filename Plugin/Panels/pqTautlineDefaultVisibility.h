@@ -4,7 +4,7 @@
  * @brief Shows a property while another one has a given value; otherwise it is an advanced one.
  *
  * The hint `<PropertyWidgetDecorator type="tautline_default_visibility" mode="visibility"
- * property="Preset" value="7"/>` of a property selects it. Its attributes are those of ParaView's
+ * property="Preset" value="7"/>` of a property selects it. It has the attributes of ParaView's
  * GenericDecorator, which hides the property otherwise, from advanced users too. The property's
  * panel_visibility must be "default".
  */

@@ -4,8 +4,8 @@
  * @brief The objectives of Optimize Mesh: one line in the panel, and a dialog that edits them.
  *
  * The dialog has a table with metric, template, target and weight in a row, and the scalarization.
- * One button adds an objective, one in each row removes it. What does not apply is grey, with the
- * reason as its tool tip: targets of metrics that do not compare with a target, a target size for
+ * One button adds an objective, one in each row removes it. Fields that do not apply are gray, with
+ * the reason as a tool tip: targets of metrics that do not compare with a target, a target size for
  * metrics without size, templates that would spoil the mesh, weights where the scalarization has
  * none. A choice that the filter will reject or ignore is named below the table and in the panel.
  * Cancel restores the objectives as they were when the dialog was opened.
@@ -62,7 +62,7 @@ private:
   void remove(int index);
   /// The value of an enumeration that a combo box shows.
   int valueOf(const QComboBox* box, const QString& property) const;
-  /// Makes the choices of a combo box grey that do not apply. @return why the current one does not
+  /// Grays out the choices of a combo box that do not apply. @return why the current one does not
   QString restrict(QComboBox* box, const std::vector<QString>& problems);
 
   ///@{
@@ -72,7 +72,7 @@ private:
   ///@}
   /// The objectives in a line: "Inverse mean ratio, Minimum angle (Weighted sum)".
   QString summary() const;
-  /// Makes what does not apply in a row grey. @return what is wrong with it, or ""
+  /// Grays out the fields of a row that do not apply. @return the problem of the row, or ""
   QString refreshRow(int index, int count, const QString& noWeight);
 
   std::vector<Row> Rows;

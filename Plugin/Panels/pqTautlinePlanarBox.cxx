@@ -41,7 +41,7 @@ constexpr const char* Kept[][2] = { { "translateZ", "0" }, { "scaleZ", "1" }, { 
 constexpr const char* HintName = "PlanarBoxHint";
 constexpr const char* Hint = "In the view: drag moves the box, Ctrl+drag turns it, Shift+drag of a "
                              "handle scales it along an axis, the right button along both.";
-constexpr float BeforeWidgets = 1.0F; ///< priority of observers: that of widgets is 0.5
+constexpr float BeforeWidgets = 1.0F; ///< priority of observers; widgets have 0.5
 constexpr int Precise = 10;           ///< digits of the fields
 
 /// A field of the panel of the box.

@@ -8,7 +8,7 @@
  * moves the box here, with Shift it takes the handles, which scale, and with Ctrl it turns the box
  * about its center, for which ParaView's box has no action in the plane of the view. Translation
  * and scale along z and rotation about x and y stay as they are without a motion; their fields are
- * grey. The box is placed, with a thickness, by pqTautlineMovingBoundary.
+ * gray. The box is placed, with a thickness, by pqTautlineMovingBoundary.
  *
  * The hint `<PropertyWidgetDecorator type="tautline_planar_box"/>` of the property with the
  * transform selects it. The proxy has the property Input.

@@ -44,7 +44,7 @@ constexpr int MostOfVerdict = 100; // letters
 constexpr const char* LinkScheme = "element";
 constexpr const char* WarningPrefix = "Warning: ";
 constexpr const char* WarningColor = "#b00020";
-/// Of filters that can free the points of invalid elements.
+/// The property of filters that can free the points of invalid elements.
 constexpr const char* FreeInvalid = "FreeInvalid";
 
 /// Whether a filter reports invalid elements whose points it was not told to free.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkSMTautlineMetricsDomain
- * @brief The metrics a property may have: those of the XML, and those registered on the server.
+ * @brief The metrics that a property may have: from the XML, and registered on the server.
  *
  * An enumeration whose further entries come from an information property, a line
  * "number<tab>label<tab>..." for each (vtkElementQuality::GetUserMetrics()). The list is read when

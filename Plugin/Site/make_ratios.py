@@ -21,7 +21,8 @@ def rows():
     """Task, what is measured, and the numbers before and after as texts."""
     valid = tl.untangle(DATA / "bracket-tangled.vtu")
     yield "*Untangle Mesh*, tangled bracket", f"{valid.inverted_before}", f"{valid.inverted}", "inverted elements"
-    angles = [tl.improve(DATA / "bracket.vtu", preset="aggressive", boundary=boundary) for boundary in ("fixed", SLIDING)]
+    bracket = DATA / "bracket.vtu"
+    angles = [tl.improve(bracket, preset="aggressive", boundary=boundary) for boundary in ("fixed", SLIDING)]
     yield ("*Improve Mesh*, bracket, boundary fixed", f"{angles[0].smallest_angle_before:.1f}°",
            f"{angles[0].smallest_angle:.0f}°", "smallest dihedral angle")  # fmt: skip
     yield ("the same, boundary slides", f"{angles[1].smallest_angle_before:.1f}°", f"{angles[1].smallest_angle:.0f}°",

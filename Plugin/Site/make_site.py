@@ -106,7 +106,8 @@ class Site:
         for file, made in PAGES.items():
             text = re.sub(rf"""(href=["']){re.escape(Path(file).name)}""", rf"\1{made}.html", text)
         text = re.sub(r"""(src=["'])(?!data:)""", rf"\1{HELP}/", text)
-        style = "".join(f"<style>\n{re.sub(r'^body .*$', '', match, flags=re.MULTILINE)}</style>\n" for match in STYLE.findall(text))
+        styles = [re.sub(r"^body .*$", "", match, flags=re.MULTILINE) for match in STYLE.findall(text)]
+        style = "".join(f"<style>\n{one}</style>\n" for one in styles)
         body = text.split("<body>", 1)[1].split("</body>", 1)[0]
         parts, end = [], 0
         for match in HEADING.finditer(body):

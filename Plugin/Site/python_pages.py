@@ -80,7 +80,8 @@ def python_pages() -> dict[str, str]:
     pages, rows = {}, {True: [], False: []}
     for name, value in found.items():
         brief, pages[f"python-{name}"] = function_page(name, value)
-        rows[inspect.isclass(value)].append(f'| <a href="python-{name}.html">{name}</a> | {brief} |'.replace("\\", "\\\\"))
+        row = f'| <a href="python-{name}.html">{name}</a> | {brief} |'
+        rows[inspect.isclass(value)].append(row.replace("\\", "\\\\"))
     parts = [f"# Python\n\n{summary}\n\n```text\n{text}\n```\n"]
     for is_class, title in ((False, "Functions"), (True, "Results and other classes")):
         parts.append(f"## {title}\n\n| name | purpose |\n|---|---|\n" + "\n".join(rows[is_class]) + "\n")

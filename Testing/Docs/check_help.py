@@ -75,9 +75,9 @@ def main(documentation: Path, made: Path, help_file: Path, xmls: list) -> int:
     references = re.findall('ref="([^"]+)"', (made.parent / "toc.xml").read_text())
     wrong += [f"toc.xml: there is no {name}" for name in references if name not in files]
     wrong += [f"{name} is too wide" for name, data in files.items() if name.endswith(".png") and width(data) > WIDEST]
-    titles = {f"{html.escape(title_of(path.read_text()), quote=False)} - Tautline" for path in documentation.glob("*.md")}
+    titles = {html.escape(title_of(path.read_text()), quote=False) for path in documentation.glob("*.md")}
     wrong += [f"{name} is none of our pages" for name, text in pages.items()
-              if (found := re.search("<title>(.*)</title>", text)) is None or found[1] not in titles]  # fmt: skip
+              if (found := re.search("<title>(.*) - Tautline</title>", text)) is None or found[1] not in titles]
     print("\n".join(wrong + [f"{len(proxies)} proxies, {len(files)} files in the help, {len(wrong)} wrong"]))
     return 1 if wrong or not proxies else 0
 

@@ -150,8 +150,9 @@ TAUTLINE_PART(checkViews)
   std::vector<std::string> warnings;
   writeGmshViews(mesh, name, &warnings);
   TAUTLINE_CHECK(warnings ==
-    std::vector<std::string>{ "view \"pair_0\": 1 of 2 elements are left out, because Gmsh cannot read "
-                              "values that are not finite (the first is cell 0)" });
+    std::vector<std::string>{
+      "view \"pair_0\": 1 of 2 elements are left out, because Gmsh cannot read "
+      "values that are not finite (the first is cell 0)" });
   std::ifstream file(name);
   const std::string text{ std::istreambuf_iterator<char>(file), {} };
   const std::string wedge = "SI(0,0,0,0,1,0,1,0,0,0,0,2,0,1,2,1,0,2)";
