@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """pvpython make_pictures.py PLUGIN [NAME...]: draws the pictures of the help pages, NAME.png, or those named.
 
-Each function below draws the picture of its name, mostly that of the page of this name; what it returns is saved.
+Each function below draws the picture of its name, mostly the picture of the page of this name; what it returns is
+saved. The colours: pale is good, dark red is bad, blue is inverted and nothing else; a change is green or orange, other
+fields go from pale to dark green, regions have colours of REGIONS.
 """
 
 import math
@@ -13,7 +15,7 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
 
 from paraview import servermanager, simple  # noqa: E402
-from small_png import read, write  # noqa: E402
+from small_png import read, write, write_smooth  # noqa: E402
 from vtkmodules.vtkCommonCore import vtkPoints  # noqa: E402
 from vtkmodules.vtkCommonDataModel import (  # noqa: E402
     VTK_QUADRATIC_TETRA,
@@ -25,11 +27,21 @@ from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter  # noqa: E402
 DATA = HERE.parents[1] / "Data"
 WIDE, HEIGHT = 660, 280  # pixels: ParaView's help window shows 680 at first
 FINE_WIDE, FINE_HEIGHT = 600, 190  # of meshes with many edges
+WIDEST_PLAIN = 860  # of three meshes
+HERO_WIDE = 1200  # of README.md
+GAP = 4  # between two views
+SMOOTH = ("before_after", "warp_mesh")  # pictures with as many shades as there is room for
 CELLS, POINTS = 1, 0
-FLAT, LIT = (1, 0), (0.6, 0.5)  # ambient and diffuse light
+FLAT, LIT, BRIGHT = (1, 0), (0.6, 0.5), (0.75, 0.35)  # ambient and diffuse light
 DARK = [0.25, 0.25, 0.25]
-PALE_BLUE = [0.62, 0.72, 0.82]
+PLAIN = [0.80, 0.80, 0.77]  # a mesh without colours
 RED = [0.8, 0.2, 0.15]
+DARK_RED = [0.72, 0.06, 0.11]  # bad, as in Filters/Quality/ColorMaps.cxx
+BLUE = [0.05, 0.35, 1.0]  # inverted, as in Filters/Quality/ColorMaps.h
+SHADOW = [0.4, 0.4, 0.4]  # a translucent mesh around what lies inside
+INSIDE = 0.12  # its opacity
+FIELD = ((0.90, 0.93, 0.76), (0.52, 0.73, 0.42), (0.05, 0.30, 0.15))  # from low to high
+REGIONS = ((0.90, 0.86, 0.72), (0.55, 0.72, 0.55), (0.62, 0.45, 0.62), (0.80, 0.60, 0.35))
 OBLIQUE = ([0.9, -2, 1.0], [0, 0, 1])  # direction to the camera, and up
 
 
@@ -64,7 +76,7 @@ def draw(source, view, array=None, where=CELLS, light=FLAT, edges=True, colour=N
         display.SetScalarColoring(array, where)
     else:
         display.ColorArrayName = [None, ""]
-        display.AmbientColor = display.DiffuseColor = colour or PALE_BLUE
+        display.AmbientColor = display.DiffuseColor = colour or PLAIN
     return display
 
 
@@ -94,18 +106,147 @@ def side_by_side(*views, size=(WIDE, HEIGHT)):
     return layout, size
 
 
-def values(array, low, high, preset="Cool to Warm"):
+def field(array, low, high, colours=FIELD):
     """Colours of an array between two values."""
     table = simple.GetColorTransferFunction(array)
-    table.ApplyPreset(preset, True)
-    table.RescaleTransferFunction(low, high)
+    places = [low + i * (high - low) / (len(colours) - 1) for i in range(len(colours))]
+    table.RGBPoints = [number for place, rgb in zip(places, colours) for number in (place, *rgb)]
+    table.ColorSpace, table.AutomaticRescaleRangeMode = "Lab", "Never"
+
+
+def field_of(source, array, where=POINTS):
+    """The same for the values that the source has."""
+    source.UpdatePipeline()
+    data = source.GetDataInformation().DataInformation
+    information = data.GetPointDataInformation() if where == POINTS else data.GetCellDataInformation()
+    field(array, *information.GetArrayInformation(array).GetComponentRange(0))
+
+
+def regions(array, numbers):
+    """A colour for each number."""
+    table = simple.GetColorTransferFunction(array)
+    table.InterpretValuesAsCategories = 1
+    table.Annotations = [text for number in numbers for text in (str(number), str(number))]
+    table.IndexedColors = [channel for i in range(len(numbers)) for channel in REGIONS[i % len(REGIONS)]]
+
+
+def numbers_in(mesh, array) -> list:
+    """The different values of a cell array of integers."""
+    mesh.UpdatePipeline()
+    low, high = mesh.CellData[array].GetRange()
+    return list(range(int(low), int(high) + 1))
+
+
+def draw_around(mesh, view):
+    """The surface of a mesh, translucent."""
+    return draw(simple.ExtractSurface(Input=mesh), view, edges=False, opacity=INSIDE, light=LIT, colour=SHADOW)
+
+
+def cut(mesh, front=0):
+    """The half of the elements behind the middle, whole ones, or the one in front of it."""
+    mesh.UpdatePipeline()
+    bounds = mesh.GetDataInformation().GetBounds()
+    half = simple.Clip(Input=mesh, ClipType="Plane", Crinkleclip=1, Invert=front)
+    half.ClipType.Origin = [(bounds[i] + bounds[i + 1]) / 2 for i in (0, 2, 4)]
+    half.ClipType.Normal = [0, 1, 0]
+    return half
+
+
+def draw_cut(mesh, view, array=None, light=LIT):
+    """One half of the mesh; the other one is translucent."""
+    draw(cut(mesh), view, array, light=light)
+    draw_around(cut(mesh, 1), view)
+
+
+def chosen(mesh, array, method, low=0.0, high=0.0):
+    """The elements whose value of a cell array is in a range."""
+    part = simple.Threshold(Input=mesh, Scalars=["CELLS", array], ThresholdMethod=method)
+    part.LowerThreshold, part.UpperThreshold = low, high
+    part.UpdatePipeline()
+    return part
+
+
+def invalid_elements(quality):
+    return chosen(output(quality, 0), "Validity", "Below Lower Threshold", 0)
+
+
+def numbers_of(mesh) -> list:
+    """The numbers of the elements, from the array Number that numbered() added."""
+    data = servermanager.Fetch(mesh).GetCellData().GetArray("Number")
+    return [int(data.GetValue(i)) for i in range(data.GetNumberOfTuples())]
+
+
+def numbered(mesh):
+    """The mesh with the cell array Number."""
+    return simple.GenerateIds(Input=mesh, CellIdsArrayName="Number")
+
+
+def same_elements(mesh, numbers):
+    """The elements with these numbers."""
+    ids = [value for number in numbers for value in (-1, number)]  # -1: of any process
+    selected = simple.IDSelectionSource(FieldType="CELL", IDs=ids)
+    return simple.ExtractSelection(Input=mesh, Selection=selected)
+
+
+def text_in(view, text, place, size=18):
+    note = simple.Show(simple.Text(Text=text), view)
+    note.Color, note.FontSize, note.FontFamily = [0, 0, 0], size, "Arial"
+    note.WindowLocation, note.Position = "Any Location", list(place)
+
+
+def swatch(view, left, right, colour=None):
+    """A rectangle of the legend; without a colour the colours of the inverse mean ratio from 1 to 3."""
+    plane = simple.Plane(Origin=[left, 0.3, 0], Point1=[right, 0.3, 0], Point2=[left, 0.75, 0], XResolution=200)
+    if colour:
+        return draw(plane, view, edges=False, colour=colour)
+    formula = f"1+2*(coordsX-{left})/{right - left}"
+    rising = simple.Calculator(Input=plane, Function=formula, ResultArrayName="imr")
+    return draw(rising, view, "imr", POINTS, edges=False)
+
+
+def quality_legend(size):
+    """One row with the colours of the inverse mean ratio and words; `size` in pixels."""
+    view = new_view()
+    wide = size[0] / size[1]  # heights of the row
+    worse = list(simple.GetColorTransferFunction("imr").AboveRangeColor)
+    swatch(view, 0.27 * wide, 0.49 * wide)
+    for place, colour, text in ((0.59, worse, "worse than 3"), (0.78, BLUE, "inverted")):
+        swatch(view, place * wide, (place + 0.025) * wide, colour)
+        text_in(view, text, (place + 0.035, 0.3))
+    for place, text in ((0.08, "Inverse mean ratio"), (0.25, "1"), (0.5, "3")):
+        text_in(view, text, (place, 0.3))
+    view.CameraFocalPoint, view.CameraPosition = [wide / 2, 0.5, 0], [wide / 2, 0.5, 10]
+    view.CameraParallelScale = 0.5
+    return side_by_side(view, size=size)
+
+
+def before_after():
+    """The mesh of `./run demo` before and after, cut open, for README.md."""
+    from tautline import demo
+
+    folder = Path(tempfile.mkdtemp())
+    start = demo.start(folder)
+    demo.measure(start, folder)
+    demo.improve(start, folder)
+    views = []
+    for name, words in (("quality", "before: {} inverted elements"), ("better", "after: {} inverted elements")):
+        mesh = simple.OpenDataFile(str(folder / f"{name}.vtu"))
+        inverted = chosen(mesh, "Validity", "Below Lower Threshold", -1)
+        count = inverted.GetDataInformation().GetNumberOfCells()
+        view = new_view(([0.75, -1.0, 0.55], [0, 0, 1]))
+        draw_cut(mesh, view, "imr", BRIGHT)
+        if count:
+            draw(inverted, view, "imr", light=BRIGHT)
+        text_in(view, words.format(count or "no"), (0.25, 0.02), 24)
+        views.append(fit(view, 1.25))
+    return side_by_side(*views, size=(HERO_WIDE, 440)), quality_legend((HERO_WIDE, 44))
 
 
 def element_quality():
     quality = simple.ElementQuality(Input=sample("bracket-tangled.vtu"))
     outside, inside = new_view(OBLIQUE), new_view(OBLIQUE)
     draw(output(quality, 0), outside, "imr", light=LIT)
-    draw(simple.ExtractSurface(Input=output(quality, 0)), inside, edges=False, opacity=0.15, light=LIT)
+    draw_around(output(quality, 0), inside)
     draw(output(quality, 7), inside, "imr", light=LIT)
     return side_by_side(fit(outside, 1.2), fit(inside, 1.2))
 
@@ -144,7 +285,7 @@ def nonpositive_jacobian_1():
         quality.UpdatePipeline()
         valid = output(quality, 0).CellData["Validity"].GetRange()[0] == 1
         view = new_view()
-        draw_curved(output(quality, 0), view, colour=PALE_BLUE if valid else RED)
+        draw_curved(output(quality, 0), view, colour=PLAIN if valid else BLUE)
         views.append(fit(view, 1.3))
     return side_by_side(*views, size=(WIDE, 220))
 
@@ -183,31 +324,31 @@ def coarse_tube():
     return curved_mesh("tube", lattice, VTK_QUADRATIC_TETRA, cells)
 
 
-def invalid_inside(quality):
+def drawn_inside(mesh, elements, colour):
     view = new_view(OBLIQUE)
-    draw_curved(output(quality, 0), view, edges=False, opacity=0.15, light=LIT)
-    invalid = simple.Threshold(Input=output(quality, 0), Scalars=["CELLS", "Validity"])
-    invalid.ThresholdMethod, invalid.LowerThreshold = "Below Lower Threshold", 0
-    invalid.UpdatePipeline()
-    if invalid.GetDataInformation().GetNumberOfCells():
-        draw_curved(invalid, view, colour=RED, light=LIT)
+    draw_curved(mesh, view, edges=False, opacity=INSIDE, light=LIT, colour=SHADOW)
+    draw_curved(elements, view, colour=colour, light=LIT)
     return fit(view, 0.95)
 
 
 def nonpositive_jacobian_2():
+    """The tube, and its folded elements."""
     quality = simple.ElementQuality(Input=coarse_tube())
     whole = new_view(OBLIQUE)
     draw_curved(output(quality, 0), whole, light=LIT)
-    return side_by_side(fit(whole, 0.95), invalid_inside(quality))
+    return side_by_side(fit(whole, 0.95), drawn_inside(output(quality, 0), invalid_elements(quality), BLUE))
 
 
 def nonpositive_jacobian_3():
+    """The tube after Untangle Mesh, and the same elements, which are valid."""
     tube = coarse_tube()
-    valid = simple.UntangleMesh(Input=tube)
-    quality = simple.ElementQuality(Input=output(valid, 0))
+    folded = numbers_of(invalid_elements(simple.ElementQuality(Input=numbered(tube))))
+    quality = simple.ElementQuality(Input=output(simple.UntangleMesh(Input=tube), 0))
+    assert not invalid_elements(quality).GetDataInformation().GetNumberOfCells()
     whole = new_view(OBLIQUE)
     draw_curved(output(quality, 0), whole, light=LIT)
-    return side_by_side(fit(whole, 0.95), invalid_inside(quality))
+    elements = same_elements(output(quality, 0), folded)
+    return side_by_side(fit(whole, 0.95), drawn_inside(output(quality, 0), elements, PLAIN))
 
 
 def before_and_after(before, after, array="imr", zoom=1.7):
@@ -225,19 +366,17 @@ def optimize_mesh():
 
 
 def improve_mesh():
-    """The tetrahedra with a dihedral angle below 25 degrees."""
+    """The bracket cut open, and all tetrahedra with a dihedral angle below 25 degrees, dark red."""
     bracket = sample("bracket.vtu")
     quality = simple.ElementQuality(Input=bracket, Metrics=["Minimum angle"])
     better = simple.ImproveMesh(Input=bracket, Preset="Aggressive")
     views = []
     for mesh in (quality, better):
-        bad = simple.Threshold(Input=output(mesh, 0), Scalars=["CELLS", "min_angle"])
-        bad.ThresholdMethod, bad.LowerThreshold = "Below Lower Threshold", 25
-        bad.UpdatePipeline()
+        bad = chosen(output(mesh, 0), "min_angle", "Below Lower Threshold", 25)
         view = new_view(OBLIQUE)
-        draw(simple.ExtractSurface(Input=bracket), view, edges=False, opacity=0.15, light=LIT)
+        draw_cut(output(mesh, 0), view)
         if bad.GetDataInformation().GetNumberOfCells():
-            draw(bad, view, "min_angle", light=LIT)
+            draw(bad, view, colour=DARK_RED, light=LIT)
         views.append(fit(view, 1.2))
     return side_by_side(*views)
 
@@ -277,6 +416,7 @@ def improve_mesh_adapt():
 
     left, right = new_view(), new_view()
     draw(front(None), left, "front", POINTS)
+    field_of(front(None), "front")
     draw(adapted_to(front, "front", 300, 4, LargestSize=0.4, LargestAnisotropy=8), right)
     return side_by_side(fit(left, 1.95), fit(right, 1.95), size=(WIDE, 180))
 
@@ -296,7 +436,9 @@ def refine_solution_1():
                                  LargestSize=0.5, MaximumEllipsoids=300, EllipsoidScale=0.4)  # fmt: skip
     left, right = new_view(), new_view()
     draw(solved, left, "Solution", POINTS)
+    field_of(solved, "Solution")
     draw(output(metric, 1), right, "Size", POINTS, edges=False)
+    field_of(output(metric, 1), "Size")
     return side_by_side(fit(left, 1.3), fit(right, 1.3))
 
 
@@ -306,6 +448,7 @@ def refine_solution_2():
     whole, near = new_view(), new_view()
     for view in (whole, near):
         draw(adapted, view, "Solution", POINTS)
+    field_of(adapted, "Solution")
     fit(whole, 1.3)
     fit(near, 3.5).CameraFocalPoint = [0, 0, 0]
     near.CameraPosition = [0, 0, 5]
@@ -313,28 +456,73 @@ def refine_solution_2():
 
 
 def untangle_mesh():
-    bracket = sample("bracket-tangled.vtu")
+    """The inverted elements, and the same elements after."""
+    bracket = numbered(sample("bracket-tangled.vtu"))
+    before = simple.ElementQuality(Input=bracket)
+    after = simple.ElementQuality(Input=output(simple.UntangleMesh(Input=bracket), 0))
+    inverted = invalid_elements(before)
     views = []
-    for mesh in (bracket, output(simple.UntangleMesh(Input=bracket), 0)):
-        quality = simple.ElementQuality(Input=mesh)
-        inverted = simple.Threshold(Input=output(quality, 0), Scalars=["CELLS", "Validity"])
-        inverted.ThresholdMethod, inverted.LowerThreshold = "Below Lower Threshold", -1
-        inverted.UpdatePipeline()
+    for mesh, elements in ((before, inverted), (after, same_elements(output(after, 0), numbers_of(inverted)))):
         view = new_view(OBLIQUE)
-        draw(simple.ExtractSurface(Input=mesh), view, edges=False, opacity=0.2, light=LIT)
-        if inverted.GetDataInformation().GetNumberOfCells():
-            draw(inverted, view, "imr", light=LIT)
+        draw_around(output(mesh, 0), view)
+        draw(elements, view, "imr", light=LIT)
         views.append(fit(view, 1.2))
     return side_by_side(*views)
 
 
+def hole_of(mesh):
+    """The boundary of the plate's hole."""
+    edges = simple.FeatureEdges(Input=simple.ExtractSurface(Input=mesh), FeatureEdges=0, NonManifoldEdges=0)
+    return simple.Clip(Input=edges, ClipType="Sphere", Invert=1)
+
+
+def mark_turn(view, mesh, angle):
+    """The hole's boundary, and an arrow along it from the first place of a point to where it moved."""
+    mesh.UpdatePipeline()
+    left, right, low, high, *_ = mesh.GetDataInformation().GetBounds()
+    centre = [(left + right) / 2, (low + high) / 2]
+    hole = hole_of(mesh)
+    hole.ClipType.Center, hole.ClipType.Radius = [*centre, 0], 0.3 * (high - low)
+    hole.UpdatePipeline()
+    bounds = hole.GetDataInformation().GetBounds()
+    radius = (bounds[1] - bounds[0]) / 2
+    rim = draw(hole, view, edges=False, colour=[0, 0, 0])
+    rim.LineWidth, rim.Position = 3, [0, 0, 0.05]
+
+    def at(degrees, distance):
+        turn = math.radians(degrees)
+        return [centre[0] + distance * math.cos(turn), centre[1] + distance * math.sin(turn), 0.1]
+
+    begin, end, inner, head = 60, 60 + angle, 0.68 * radius, 22
+    lines = [[at(begin, 0.86 * inner), at(begin, 1.14 * inner)]]
+    lines.append([at(degrees, inner) for degrees in range(begin, end + 1, 4)])
+    lines.append([at(end - head, 0.78 * inner), at(end, inner), at(end - head, 1.22 * inner)])
+    for line in lines:
+        arrow = draw(simple.PolyLineSource(Points=[number for point in line for number in point]), view, edges=False,
+                     colour=[0, 0, 0])  # fmt: skip
+        arrow.LineWidth = 3
+
+
 def warp_mesh():
+    """The hole is turned by 120 degrees: the plate, FEMWARP, which inverts elements, and the hybrid method."""
     plate = sample("plate.vtu")
-    turned = simple.WarpMesh(Input=plate, TransformKind="Rotation", Angle=60)
-    left, right = new_view(), new_view()
-    draw(plate, left, colour=[1, 1, 1])
-    draw(output(turned, 0), right, "TMP shape")
-    return side_by_side(fit(left, 1.7), fit(right, 1.7), size=(FINE_WIDE, FINE_HEIGHT))
+    angle = 120
+    views = [new_view() for _ in range(3)]
+    draw(plate, views[0], colour=[1, 1, 1])
+    counts = []
+    for method, view in zip(("FEMWARP", "Hybrid"), views[1:]):
+        turned = simple.WarpMesh(Input=plate, Method=method, TransformKind="Rotation", Angle=angle)
+        quality = simple.ElementQuality(Input=output(turned, 0))
+        inverted = invalid_elements(quality)
+        counts.append(inverted.GetDataInformation().GetNumberOfCells())
+        draw(output(quality, 0), view, "imr")
+        if counts[-1]:
+            draw(inverted, view, "imr").Position = [0, 0, 0.1]  # they lie below others
+    assert counts == [111, 0], counts  # as README.md has them
+    for view in views:
+        mark_turn(view, plate, angle)
+        fit(view, 2.6)
+    return side_by_side(*views, size=(WIDEST_PLAIN, 220))
 
 
 def perturb_mesh():
@@ -342,8 +530,7 @@ def perturb_mesh():
     worse = simple.PerturbMesh(Input=plate, TangledFraction=0.01)
     quality = simple.ElementQuality(Input=worse)
     layout = before_and_after(simple.ElementQuality(Input=plate), output(quality, 0))
-    inverted = simple.Threshold(Input=output(quality, 0), Scalars=["CELLS", "Validity"])
-    inverted.ThresholdMethod, inverted.LowerThreshold = "Below Lower Threshold", -1
+    inverted = chosen(output(quality, 0), "Validity", "Below Lower Threshold", -1)
     draw(inverted, simple.GetActiveView(), "imr").Position = [0, 0, 0.1]  # they lie below others
     return layout
 
@@ -376,7 +563,9 @@ def metric_tensor():
     )  # fmt: skip
     left, right = new_view(), new_view()
     draw(front, left, "front", POINTS, edges=False)
+    field_of(front, "front")
     draw(output(metric, 1), right, "Size", POINTS, edges=False)
+    field_of(output(metric, 1), "Size")
     return side_by_side(fit(left, 1.3), fit(right, 1.3))
 
 
@@ -392,6 +581,7 @@ def transfer():
     left, right = new_view(), new_view()
     draw(jump, left, "density", POINTS)
     draw(output(moved, 0), right, "density", POINTS)
+    field_of(jump, "density")
     return side_by_side(fit(left, 1.3), fit(right, 1.3))
 
 
@@ -400,8 +590,6 @@ def compare_meshes():
     changes = simple.CompareMeshes(Input=plate, Other=simple.OptimizeMesh(Input=plate))
     view = new_view()
     draw(output(changes, 0), view, "Change")
-    values("Change", -1, 1)
-    simple.GetColorTransferFunction("Change").InvertTransferFunction()
     return side_by_side(fit(view, 1.3), size=(WIDE // 2, HEIGHT))
 
 
@@ -411,8 +599,6 @@ def field_of_metric():
     base = simple.Line(Point1=[0, 0, 0], Point2=[1, 0, 0])
     view = new_view()
     draw(field, view, "imr", POINTS, edges=False)
-    values("imr", 1, 8, "Viridis (matplotlib)")
-    simple.GetColorTransferFunction("imr").InvertTransferFunction()
     for source, width in ((lines, 1), (base, 4)):
         display = draw(source, view, edges=False, colour=[0, 0, 0])
         display.LineWidth, display.Position = width, [0, 0, 0.01]
@@ -463,15 +649,15 @@ def solve_pde():
     solved = simple.SolvePDE(Input=sample("plate.vtu"))
     view = new_view()
     draw(output(solved, 0), view, "Solution", POINTS, edges=False)
+    field_of(output(solved, 0), "Solution")
     return side_by_side(fit(view, 1.3), size=(360, HEIGHT))
 
 
 def condition_estimator():
     condition = simple.ConditionEstimator(Input=sample("bracket.vtu"))
-    bad = simple.Threshold(Input=output(condition, 0), Scalars=["CELLS", "Excess"])
-    bad.ThresholdMethod, bad.UpperThreshold = "Above Upper Threshold", 1
+    bad = chosen(output(condition, 0), "Excess", "Above Upper Threshold", high=1)
     view = new_view(OBLIQUE)
-    draw(simple.ExtractSurface(Input=output(condition, 0)), view, edges=False, opacity=0.15, light=LIT)
+    draw_around(output(condition, 0), view)
     draw(bad, view, "Excess", light=LIT)
     return side_by_side(fit(view, 1.2), size=(420, HEIGHT))
 
@@ -482,6 +668,7 @@ def solver_study():
     view = simple.CreateView("XYBarChartView")
     display = simple.Show(output(study, 1), view)
     display.SeriesVisibility = ["Total time (s)"]
+    display.SeriesColor = ["Total time (s)", "0.35", "0.55", "0.35"]
     display.UseIndexForXAxis, display.XArrayName = 0, "N combination"
     view.LeftAxisTitle, view.BottomAxisTitle, view.ShowLegend = "Total time (s)", "Combination", 0
     return side_by_side(view, size=(WIDE // 2, HEIGHT))
@@ -492,10 +679,10 @@ def peridynamic_condition():
     condition = simple.PeridynamicCondition(Input=output(square, 0), Solve=1)
     left, right = new_view(), new_view()
     draw(output(square, 0), left, "Reference")
-    values("Reference", 0.5, 3, "Grayscale")
-    simple.GetColorTransferFunction("Reference").InvertTransferFunction()
+    field("Reference", 0.5, 3, ((1, 1, 1), (0, 0, 0)))
     condition.UpdatePipeline()
     draw(output(condition, 0), right, "Solution", POINTS, edges=False)
+    field_of(output(condition, 0), "Solution")
     return side_by_side(fit(left, 1.3), fit(right, 1.3))
 
 
@@ -506,8 +693,7 @@ def interaction_layer():
     layer = simple.InteractionLayer(Input=output(mesh, 0), Width=1.5 * edge)
     view = new_view()
     draw(layer, view, "Reference")
-    values("Reference", 0.5, 3, "Grayscale")
-    simple.GetColorTransferFunction("Reference").InvertTransferFunction()
+    field("Reference", 0.5, 3, ((1, 1, 1), (0, 0, 0)))
     return side_by_side(fit(view, 1.3), size=(420, HEIGHT))
 
 
@@ -517,7 +703,6 @@ def horizon_neighbors():
     view = new_view()
     draw(output(square, 0), view, colour=[1, 1, 1])
     draw(output(near, 0), view, "Case").Position = [0, 0, 0.01]
-    values("Case", 0, 3)
     circle = draw(output(near, 1), view, edges=False, colour=[0, 0, 0])
     circle.LineWidth, circle.Position = 3, [0, 0, 0.02]
     return side_by_side(fit(view, 2.2), size=(420, HEIGHT))
@@ -577,13 +762,14 @@ def gmsh_files():
     part = sample("part.msh")
     part.UpdatePipeline()
     draw(part, view, "Reference", light=LIT)
-    values("Reference", *part.CellData["Reference"].GetRange())
+    regions("Reference", numbers_in(part, "Reference"))
     return side_by_side(fit(view, 1.3), size=(360, HEIGHT))
 
 
 def abaqus_files():
     view = new_view(OBLIQUE)
     draw(sample("beam.inp"), view, "LOADED", light=LIT)
+    regions("LOADED", (0, 1))
     return side_by_side(fit(view, 1.3), size=(360, HEIGHT))
 
 
@@ -592,7 +778,7 @@ def nastran_files():
     ring = sample("ring.bdf")
     ring.UpdatePipeline()
     draw(ring, view, "Reference")
-    values("Reference", *ring.CellData["Reference"].GetRange())
+    regions("Reference", numbers_in(ring, "Reference"))
     return side_by_side(fit(view, 1.1), size=(360, HEIGHT))
 
 
@@ -608,7 +794,7 @@ def mfem_files():
     pipe.UpdatePipeline()
     display = draw(pipe, view, "Reference", light=LIT)
     display.NonlinearSubdivisionLevel = 3
-    values("Reference", *pipe.CellData["Reference"].GetRange())
+    regions("Reference", numbers_in(pipe, "Reference"))
     return side_by_side(fit(view, 1.3), size=(360, HEIGHT))
 
 
@@ -654,7 +840,7 @@ def fluent_files():
         mesh = simple.OpenDataFile(str(Path(folder) / "bend.msh"))
         mesh.UpdatePipeline()
     draw(mesh, view, "Patch").LineWidth = 2
-    values("Patch", -1, 2)
+    regions("Patch", (-1, 0, 1, 2))
     return side_by_side(fit(view, 1.1), size=(360, HEIGHT))
 
 
@@ -664,7 +850,7 @@ def openfoam_files():
     patches = simple.Threshold(Input=case, Scalars=["CELLS", "Patch"], LowerThreshold=0, UpperThreshold=2)
     patches.UpdatePipeline()
     draw(patches, view, "Patch", light=LIT).SetRepresentationType("Surface With Edges")
-    values("Patch", *patches.CellData["Patch"].GetRange())
+    regions("Patch", numbers_in(patches, "Patch"))
     return side_by_side(fit(view, 1.3), size=(360, HEIGHT))
 
 
@@ -675,7 +861,7 @@ def tetgen_files():
 
 
 PICTURES = (
-    element_quality, optimize_mesh, improve_mesh, improve_mesh_plane, improve_mesh_adapt,
+    before_after, element_quality, optimize_mesh, improve_mesh, improve_mesh_plane, improve_mesh_adapt,
     refine_solution_1, refine_solution_2, untangle_mesh, warp_mesh, perturb_mesh,
     curve_mesh, metric_tensor, transfer, compare_meshes, field_of_metric, mesh_domain, triangle_mesher, tetgen_mesher,
     solve_pde, condition_estimator, solver_study, peridynamic_condition, interaction_layer, horizon_neighbors,
@@ -694,9 +880,10 @@ def save(pictures, path: Path) -> None:
         images = []
         for layout, size in rows:
             name = Path(folder) / "picture.png"
-            simple.SaveScreenshot(str(name), layout, ImageResolution=list(size), SeparatorWidth=0)
+            simple.SaveScreenshot(str(name), layout, ImageResolution=list(size), SeparatorWidth=GAP,
+                                  SeparatorColor=[1, 1, 1], FontScaling="Do not scale fonts")  # fmt: skip
             images.append(read(name))
-    write(numpy.concatenate(images), path)
+    (write_smooth if path.stem in SMOOTH else write)(numpy.concatenate(images), path)
     print(path.name, path.stat().st_size)
 
 

@@ -1,17 +1,23 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""pvpython make_strips.py FOLDER: makes the picture strips of jobs.html from the screenshots that the sessions save.
+"""pvpython make_strips.py FOLDER [--play BUILD]: makes the pictures of ParaView's window from screenshots of sessions.
 
-    TAUTLINE_SCREENSHOTS=FOLDER ctest --test-dir build -R '^Gui.(Quality|Repair|Fields|Shapes)$'
-    pvpython Plugin/Documentation/make_strips.py FOLDER
+    pvpython Plugin/Documentation/make_strips.py /tmp/screenshots --play build
+
+plays the sessions of the tutorial and the jobs (Testing/Gui) with the plugin of the build tree, which takes some
+minutes, and makes all pictures; without --play, it makes pictures of the screenshots that are in FOLDER.
 
 The screenshots of job N are jobN-STEP-NAME.png (Testing/Gui/screenshots.py). Its strip is job_N.png; the place of the
-strip in jobs.html is between the comments <!-- strip: N --> and <!-- end of strip -->. Jobs without screenshots in
-FOLDER keep their strips. A file tutorial-7-report.png becomes the picture of the tutorial's step; openfoam-N-NAME.png
-becomes openfoam_mesh_N.png of Plugin/Site/openfoam-mesh.md, and openfoam-3-*.png may be a plot of
+strip in jobs.md is between the comments <!-- strip: N --> and <!-- end of strip -->. Jobs without screenshots in
+FOLDER keep their strips. A file tutorial-N-NAME.png becomes tutorial_N_NAME.png, with the places to click of
+tutorial-N-NAME.json marked; a tutorial_*.png without a screenshot is an error. openfoam-N-NAME.png becomes
+openfoam_mesh_N.png of Plugin/Site/openfoam-mesh.md, and openfoam-3-*.png may be a plot of
 Testing/OpenFoam/solve_case.py.
 """
 
+import json
+import os
 import re
+import subprocess
 import sys
 from pathlib import Path
 
@@ -20,15 +26,28 @@ import numpy as np
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
 
-from small_png import FINEST, MAX_COLOURS, read, shrink, write  # noqa: E402
+from small_png import read, shrink, write_smooth  # noqa: E402
 
-PAGE = HERE / "jobs.html"
+PAGE = HERE / "jobs.md"
 JOBS = range(1, 8)
-WIDTH, GAP = 326, 8  # pixels of a frame, and between two
-COLUMNS = 2
-WIDE = COLUMNS * (WIDTH + GAP) - GAP
-WIDEST = 860  # of a picture on the site (Testing/Docs/check_links.py)
-SHADE = 24  # shades are rounded to multiples, for small files
+GUI, DATA = HERE.parents[1] / "Testing" / "Gui", HERE.parents[1] / "Data"
+SESSIONS = ("Tutorial*", "Job*")  # which save screenshots
+COLUMNS, GAP = 2, 8  # of a strip; pixels between two frames
+WIDEST = 1200  # of a picture on the site (Testing/Docs/check_links.py)
+WIDTH = (WIDEST - (COLUMNS - 1) * GAP) // COLUMNS  # of a frame
+MARK, WHITE = (235, 95, 0), (255, 255, 255)  # no color of a mesh
+THICK, RADIUS, APART = 3, 12, 4  # pixels: of a frame around a widget, of its number, and between widget and frame
+NARROW = 40  # pixels: of a widget that a number would hide
+#: The digits from 1, 5 x 7 pixels.
+DIGITS = """
+..#.. .###. ##### ...#. ##### ..##. ##### .###. .###.
+.##.. #...# ...#. ..##. #.... .#... ....# #...# #...#
+..#.. ....# ..#.. .#.#. ####. #.... ...#. #...# #...#
+..#.. ...#. ...#. #..#. ....# ####. ..#.. .###. .####
+..#.. ..#.. ....# ##### ....# #...# .#... #...# ....#
+..#.. .#... #...# ...#. #...# #...# .#... #...# ...#.
+.###. ##### .###. ...#. .###. .###. .#... .###. .##..
+"""
 
 
 def window(image: np.ndarray) -> np.ndarray:
@@ -38,59 +57,123 @@ def window(image: np.ndarray) -> np.ndarray:
     return image[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1, :3]
 
 
-def posterized(image: np.ndarray) -> np.ndarray:
-    return np.minimum((image.astype(int) + SHADE // 2) // SHADE * SHADE, 255).astype(np.uint8)
+def digit(number: int) -> np.ndarray:
+    """A digit from 1 to 9 as a field of truth values, twice its size."""
+    rows = [line.split()[number - 1] for line in DIGITS.split("\n") if line]
+    return np.array([[mark == "#" for mark in row] for row in rows]).repeat(2, axis=0).repeat(2, axis=1)
 
 
-def frequent(image: np.ndarray) -> np.ndarray:
-    """Each color is replaced by the nearest of the most frequent ones: dim faces keep their colors."""
-    rounded = np.minimum((image.astype(int) + FINEST // 2) // FINEST * FINEST, 255)
-    colors, places, counts = np.unique(rounded.reshape(-1, 3), axis=0, return_inverse=True, return_counts=True)
-    kept = colors[np.argsort(-counts, kind="stable")[:MAX_COLOURS]]
-    nearest = [((kept - color) ** 2).sum(axis=1).argmin() for color in colors]
-    return kept[nearest][places].reshape(image.shape).astype(np.uint8)
+def frame(image: np.ndarray, place: list, apart: int, thick: int, color: tuple) -> None:
+    """A frame around a rectangle, within the image."""
+    left, top, wide, high = place
+    rows, columns = np.ogrid[: image.shape[0], : image.shape[1]]
+
+    def inside(margin: int) -> np.ndarray:
+        across = np.maximum(left - columns, columns - left - wide + 1)
+        return np.maximum(across, np.maximum(top - rows, rows - top - high + 1)) <= margin
+
+    image[inside(apart + thick) & ~inside(apart)] = color
+
+
+def marked(image: np.ndarray, places: list) -> np.ndarray:
+    """The image with frames around the places, numbered if there are several."""
+    image = image[..., :3].copy()
+    for place in places:
+        frame(image, place, APART - 1, THICK + 2, WHITE)
+        frame(image, place, APART, THICK, MARK)
+    rows, columns = np.ogrid[: image.shape[0], : image.shape[1]]
+    for number, (left, top, wide, _) in enumerate(places if len(places) > 1 else (), 1):
+        x = left + wide + APART + RADIUS if wide < NARROW else max(left - APART, RADIUS + 1)  # beside small ones
+        y = max(top - APART, RADIUS + 1)
+        apart = np.hypot(columns - x, rows - y)
+        image[apart <= RADIUS + 1] = WHITE
+        image[apart <= RADIUS] = MARK
+        shape = digit(number)
+        high, wide = shape.shape
+        image[y - high // 2 : y - high // 2 + high, x - wide // 2 : x - wide // 2 + wide][shape] = WHITE
+    return image
 
 
 def strip(files: list) -> np.ndarray:
     """The frames in rows, from left to right, and the last one below them, large."""
     windows = [window(read(file)) for file in files]
-    last = shrink(windows.pop(), WIDE)
+    last = shrink(windows.pop(), WIDEST)
     frames = [shrink(image, WIDTH) for image in windows]
-    height = max((frame.shape[0] for frame in frames), default=0) + GAP
+    height = max((image.shape[0] for image in frames), default=0) + GAP
     begin = -(-len(frames) // COLUMNS) * height
-    result = np.full((begin + last.shape[0], WIDE, 3), 255, np.uint8)
-    for number, frame in enumerate(frames):
+    result = np.full((begin + last.shape[0], WIDEST, 3), 255, np.uint8)
+    for number, image in enumerate(frames):
         top, left = number // COLUMNS * height, number % COLUMNS * (WIDTH + GAP)
-        result[top : top + frame.shape[0], left : left + WIDTH] = frame
+        result[top : top + image.shape[0], left : left + WIDTH] = image
     result[begin:] = last
-    return posterized(result)
+    return result
 
 
-def main(folder: Path) -> int:
+def make_jobs(folder: Path) -> None:
     text = PAGE.read_text(encoding="utf-8")
-    made = 0
     for job in JOBS:
         files = sorted(folder.glob(f"job{job}-*.png"))
         if not files:
             print(f"job {job}: no screenshots in {folder}")
             continue
         picture = HERE / f"job_{job}.png"
-        write(strip(files), picture)
+        write_smooth(strip(files), picture)
         begin, end = f"<!-- strip: {job} -->\n", "<!-- end of strip -->"
-        image = f'<p><img src="{picture.name}" alt="The steps of job {job}"></p>\n'
+        image = f"\n![The steps of job {job}]({picture.name})\n\n"
         text, places = re.subn(f"{begin}.*?{end}", f"{begin}{image}{end}", text, flags=re.DOTALL)
-        assert places == 1, f"jobs.html has {places} places for the strip of job {job}"
+        assert places == 1, f"jobs.md has {places} places for the strip of job {job}"
         print(f"{picture.name}: {len(files)} frames, {picture.stat().st_size} bytes")
-        made += 1
-    PAGE.write_text(text, encoding="utf-8")
-    for file in folder.glob("tutorial-7-*.png"):
-        write(posterized(shrink(window(read(file)), WIDE)), HERE / "tutorial_7.png")
-        made += 1
+    if text != PAGE.read_text(encoding="utf-8"):
+        PAGE.write_text(text, encoding="utf-8")
+
+
+def make_tutorial(folder: Path) -> None:
+    made = set()
+    for file in sorted(folder.glob("tutorial-*.png")):
+        picture = HERE / f"{file.stem.replace('-', '_')}.png"
+        write_smooth(marked(read(file), json.loads(file.with_suffix(".json").read_text(encoding="utf-8"))), picture)
+        print(picture.name, picture.stat().st_size)
+        made.add(picture)
+    left = sorted(path.name for path in set(HERE.glob("tutorial_*.png")) - made)
+    assert not (made and left), f"no session makes {left}"
+
+
+def play(build: Path, folder: Path) -> None:
+    """Plays the sessions one after another in one ParaView, which saves the screenshots."""
+    plugin = next(build.glob("lib/paraview-*/plugins/Tautline"))
+    environment = {
+        **os.environ, "TAUTLINE_SCREENSHOTS": str(folder), "TAUTLINE_GUI": str(GUI), "LIBGL_ALWAYS_SOFTWARE": "1",
+        "TAUTLINE_WIDGETS": str(build / "lib" / "libTautlineWidgetPlaces.so"), "TAUTLINE_DATA_DIR": str(DATA),
+        "TAUTLINE_SAMPLE": str(DATA / "bracket-tangled.vtu"), "TAUTLINE_TEST_DIR": str(folder),
+        "TAUTLINE_SAMPLE_SCRIPT": str(HERE.parent / "open_sample.py"),
+        "PARAVIEW_TEST_BASELINE_DIR": str(HERE.parents[1] / "Testing" / "Baseline"),
+    }  # fmt: skip
+    environment.pop("PV_PLUGIN_PATH", None)  # a plugin is loaded once
+    script = folder / "sessions.xml"
+    sessions = [file for pattern in SESSIONS for file in sorted(GUI.glob(f"{pattern}.xml"))]
+    subprocess.run([sys.executable, GUI / "join_sessions.py", "--no-pictures", script, *sessions], check=True)
+    subprocess.run(
+        [build / "Testing" / "Gui" / "headless-paraview", f"--plugin-search-paths={plugin}", "--plugins=Tautline",
+         f"--test-script={script}", f"--test-directory={folder}", f"--data-directory={DATA}", "--dr", "--exit"],
+        env=environment, check=True)  # fmt: skip
+
+
+def main(folder: Path, build: str) -> None:
+    folder = folder.resolve()
+    if build:
+        folder.mkdir(parents=True, exist_ok=True)
+        for old in (*folder.glob("*.png"), *folder.glob("*.json")):
+            if re.match("job|tutorial-|openfoam-[12]", old.name):
+                old.unlink()
+        play(Path(build).resolve(), folder)
+    make_jobs(folder)
+    make_tutorial(folder)
     for file in folder.glob("openfoam-*.png"):
-        write(frequent(shrink(window(read(file)), WIDEST)), HERE / f"openfoam_mesh_{file.name.split('-')[1]}.png")
-        made += 1
-    return 0 if made else 1
+        picture = HERE / f"openfoam_mesh_{file.name.split('-')[1]}.png"
+        write_smooth(shrink(window(read(file)), WIDEST), picture)
+        print(picture.name, picture.stat().st_size)
 
 
 if __name__ == "__main__":
-    sys.exit(main(Path(sys.argv[1])))
+    names = [name for name in sys.argv[1:] if name != "--play"]
+    main(Path(names[0]), names[1] if "--play" in sys.argv else "")

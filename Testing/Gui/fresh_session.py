@@ -9,6 +9,7 @@ import os
 import sys
 import traceback
 
+import screenshots
 from paraview import servermanager, simple
 
 # Groups of registered proxies that stay when sources and views are gone.
@@ -49,6 +50,7 @@ def begin(name):
     try:
         if simple.GetSources():
             remove_all()
+            screenshots.hide_messages()
             simple.AssignViewToLayout(simple.CreateRenderView())
         assert not simple.GetSources() and len(simple.GetViews()) == len(simple.GetLayouts()) == 1
     except BaseException:  # the shell would print it in its window, and the session go on

@@ -5,7 +5,7 @@ The inverse mean ratio of an equilateral tetrahedron is 1, large values are bad,
 itself.
 
 Shell: tautline quality bracket-tangled.vtu --metrics imr,min_angle -o after.vtu
-Look at: the elements beyond 3 (red) and inverted ones (blue) inside the translucent surface.
+Look at: the elements beyond 3 (dark red) and the inverted ones (blue) inside the translucent surface.
 State: ElementQuality(Input=before, Metrics=["Inverse mean ratio", "Minimum angle"])
 Picture: imr inside alone
 """

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Untangle a bracket.
 
-41 of its 8,140 tetrahedra are inverted; afterwards none is. The boundary does not move.
+41 of its 8,140 tetrahedra are inverted; afterwards none is inverted. The boundary does not move.
 
 Shell: tautline untangle bracket-tangled.vtu -o after.vtu
-Look at: the red elements inside the translucent surface: they are inverted, and gone afterwards.
+Look at: the inverted elements (blue) inside the translucent surface, and the same elements afterwards: they are valid.
 State: UntangleMesh(Input=before)
 Picture: Validity inside
 """

@@ -6,7 +6,7 @@ Improve Mesh changes which points are joined: afterwards no dihedral angle of th
 Shell: tautline improve before.vtu -o after.vtu
 Look at: the smallest dihedral angle.
 State: ImproveMesh(Input=before)
-Picture: imr clip
+Picture: min_angle clip
 """
 
 import sys

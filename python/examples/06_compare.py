@@ -5,7 +5,7 @@ Which elements became worse? Change is a cell array: 1 is better, 0 equal, -1 wo
 
 Shell: tautline perturb bracket.vtu --fraction 0.4 --seed 1 -o worse.vtu
 Shell: tautline compare bracket.vtu worse.vtu --csv changes.csv -o after.vtu
-Look at: the elements that became better (blue) and worse (red).
+Look at: the elements that became better (green) and worse (orange).
 State: CompareMeshes(Input=before, Other=OpenDataFile("worse.vtu"))
 Picture: Change clip
 """

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Let boundary points slide.
+"""Slide boundary points.
 
 With the boundary "sliding", points on flat and straight parts of the boundary move along them; corners stay.
 
 Shell: tautline optimize bracket.vtu --boundary sliding -o after.vtu
 Look at: the worst element with a fixed boundary, and with a sliding one.
 State: OptimizeMesh(Input=before, Boundary="Slide on flat parts")
-Picture: imr
+Picture: imr clip
 """
 
 import sys

@@ -6,9 +6,9 @@ stands out.
 
 Shell: tautline perturb plate.vtu --fraction 0.98 --percentage 100 --seed 9 -o before.vtu
 Shell: tautline condition before.vtu --preconditioner jacobi -o after.vtu
-Look at: the few elements with a large share.
+Look at: the dark elements, which are a hundred times as stiff as the mean, and their share.
 State: ConditionEstimator(Input=before, Preconditioner="Jacobi")
-Picture: Share
+Picture: Excess
 """
 
 import sys

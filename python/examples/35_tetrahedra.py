@@ -7,7 +7,7 @@ Shell: tautline tet-mesh cube.smesh --volume 0.002 --radius-edge-ratio 1.6 --min
 Shell: tautline improve before.vtu --preset aggressive -o after.vtu
 Look at: the smallest dihedral angle.
 State: ImproveMesh(Input=before, Preset="Aggressive")
-Picture: imr clip
+Picture: min_angle clip
 """
 
 import sys

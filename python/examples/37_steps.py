@@ -4,8 +4,8 @@
 Read, grade, untangle, optimize and write, as a file that is checked before it runs; the shell runs the same file.
 
 Shell: tautline run steps.toml
-Look at: the file; the arguments are those of the Python functions.
-Picture: imr
+Look at: the file; its arguments are the arguments of the Python functions.
+Picture: imr clip
 """
 
 import sys

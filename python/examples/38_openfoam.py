@@ -3,11 +3,11 @@
 
 The points inside a bent duct of polyhedra have been moved at random: checkMesh fails, and simpleFoam diverges. The
 preset "finite volumes" moves them until the checks pass. simpleFoam then converges in 40 iterations; on the mesh before
-the perturbation it takes 38. Testing/OpenFoam/solve_case.py has measured this; 38_openfoam.json has the residuals.
+the perturbation it takes 38. Testing/OpenFoam/solve_case.py measured this; 38_openfoam.json has the residuals.
 
 Shell: tautline optimize before.vtu --preset "finite volumes" -o after.vtu
 State: OptimizeMesh(Input=before, Preset="Finite volumes")
-Look at: the mesh cut open, colored by non-orthogonality from 0 to 170 degrees; the checks that fail before; and the \
+Look at: the mesh cut open, colored by non-orthogonality, dark beyond 70 degrees; the checks that fail before; and the \
   residuals that are printed, of the same solver with the same settings.
 Picture: non_orthogonality clip
 """

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """make_gallery.py DATA [NAME...]: runs the examples and makes their pictures, and the table of their time and memory.
 
-Each example writes before.vtu and after.vtu (or .vti), which the picture pictures/NAME.png shows side by side, coloured
-by the array that the line "Picture:" of its docstring names; "edges" has no colours, "clip" shows the half behind the
-middle, "inside" the elements that fail (invalid, or beyond the range of the colours) inside a translucent surface, and
-"alone" does not show the mesh before.
+Each example writes before.vtu and after.vtu (or .vti), which the picture pictures/NAME.png shows side by side, colored
+by the array that the line "Picture:" of its docstring names; "edges" has no colors, "clip" shows the half behind the
+middle, "inside" the elements that fail (invalid, or beyond the range of the colors) inside a translucent surface, both
+before and after, and "alone" does not show the mesh before. The colors are the plugin's: pale is good, dark red is
+bad, blue is inverted and nothing else; other fields go from pale to dark green.
 measured.json has the CPU seconds and the memory, MiB, of the process. Needs a display; Testing/headless.sh gives one.
 """
 
@@ -17,23 +18,29 @@ import tempfile
 from pathlib import Path
 
 import tautline as tl
-from PIL import Image
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkLookupTable
+from vtkmodules.vtkCommonCore import vtkLookupTable, vtkVariant
 from vtkmodules.vtkCommonDataModel import vtkPlane
 from vtkmodules.vtkFiltersCore import vtkExtractCells
 from vtkmodules.vtkFiltersExtraction import vtkExtractGeometry
 from vtkmodules.vtkFiltersGeometry import vtkGeometryFilter
 from vtkmodules.vtkIOImage import vtkPNGWriter
-from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow
-from vtkmodules.vtkRenderingCore import vtkWindowToImageFilter
+from vtkmodules.vtkRenderingAnnotation import vtkScalarBarActor
+from vtkmodules.vtkRenderingCore import vtkActor, vtkColorTransferFunction, vtkPolyDataMapper, vtkRenderer
+from vtkmodules.vtkRenderingCore import vtkRenderWindow, vtkTextActor, vtkWindowToImageFilter
+import vtkmodules.vtkRenderingFreeType  # noqa: F401, which makes the texts work
 import vtkmodules.vtkRenderingOpenGL2  # noqa: F401, which makes the classes above work
 
 HERE = Path(__file__).resolve().parent
-SIZE = (560, 240)  # of a picture, pixels
-COLOURS = 48  # of its palette, for small files
+sys.path.insert(0, str(HERE.parents[1] / "Plugin" / "Documentation"))
+
+from small_png import read, write_smooth  # noqa: E402
+
+SIZE = (560, 280)  # of a picture, pixels
+LEGEND = 40 / 280  # the part of the height below the meshes
+COLORS = (64, 32, 16)  # of its palette, for small files
 MOST_BYTES = 40_000
-#: Runs a script and prints the most memory that the process had.
+#: Runs a script and prints the peak memory of the process.
 MEASURE = """
 import os, runpy, sys
 sys.argv = sys.argv[1:]
@@ -43,12 +50,16 @@ print(next(line for line in open("/proc/self/status") if line.startswith("VmHWM"
 """
 VALID, NOT_MEASURED = 1, -2  # of the array Validity
 TRANSLUCENT = 0.12  # opacity of the surface around the elements inside
-HUES = (0.62, 0.0)  # blue is good, red is bad
-UPWARD = ("Validity", "Change")  # arrays whose large values are good
+DARK = 1.3  # the sum of red, green and blue, below which text on a color is white
+MESH = (0.84, 0.84, 0.82)  # without colors
+#: For fields that are no measure of quality, from low to high.
+FIELD = ((0.0, 0.90, 0.93, 0.76), (0.5, 0.52, 0.73, 0.42), (1.0, 0.05, 0.30, 0.15))
+REGIONS = ((0.90, 0.86, 0.72), (0.55, 0.72, 0.55), (0.62, 0.45, 0.62), (0.80, 0.60, 0.35))
+OWN_METRICS = {"edge_span": "QualityIndex"}  # of examples: with the map of an array of the plugin
 
 
 def measured(mesh, array: str):
-    """The mesh with the array, which is a metric's if the mesh does not have it; other arrays are of one mesh only."""
+    """The mesh with the array, which is a metric if the mesh lacks it; other arrays are of one mesh only."""
     names = [data.GetArrayName(i) for data in (mesh.GetPointData(), mesh.GetCellData())
              for i in range(data.GetNumberOfArrays())]  # fmt: skip
     if array in names or array == "edges":
@@ -80,34 +91,94 @@ def surface(mesh, clip: bool):
     return outside.GetOutput()
 
 
-def failing(mesh, array: str, most: float):
-    """The surfaces of the elements that are not valid or whose value is beyond `most`."""
+def failing(mesh, array: str, most: float) -> list:
+    """The elements that are not valid or whose value is beyond `most`."""
     validity = vtk_to_numpy(tl.quality(mesh, "imr").mesh.GetCellData().GetArray("Validity"))
     bad = (validity < VALID) & (validity != NOT_MEASURED)
     if array != "Validity":
         bad |= vtk_to_numpy(array_of(mesh, array)) > most
+    return bad.nonzero()[0].tolist()
+
+
+def extracted(mesh, chosen: list):
     cells = vtkExtractCells()
     cells.SetInputData(mesh)
-    for cell in bad.nonzero()[0].tolist():
+    for cell in chosen:
         cells.AddCellRange(cell, cell)
     cells.Update()
     return cells.GetOutput()
 
 
-def draw(window, mesh, array: str, how: list[str], span, place) -> None:
+def settings() -> dict:
+    """The color maps of the plugin, by the names of arrays without blanks."""
+    return json.loads(tl.vtkElementQuality.GetColorMapSettings())["array_lookup_tables"]
+
+
+def transfer(points: list, low: float, high: float, table: dict) -> vtkColorTransferFunction:
+    """A map through points (value from 0 to 1, red, green, blue) between two values, with the colors beyond them."""
+    colors = vtkColorTransferFunction()
+    colors.SetColorSpaceToLab()
+    for place, *rgb in points:
+        colors.AddRGBPoint(low + place * (high - low), *rgb)
+    for side in ("Below", "Above"):
+        if table.get(f"Use{side}RangeColor"):
+            getattr(colors, f"Set{side}RangeColor")(table[f"{side}RangeColor"])
+            getattr(colors, f"Use{side}RangeColorOn")()
+    return colors
+
+
+def categories(values: list, names: list, colors: list) -> vtkLookupTable:
+    """A color for each value, with its name."""
+    table = vtkLookupTable()
+    table.IndexedLookupOn()
+    table.SetNumberOfTableValues(len(values))
+    for i, (value, name, color) in enumerate(zip(values, names, colors)):
+        table.SetAnnotation(vtkVariant(value), name)
+        table.SetTableValue(i, *color, 1)
+    return table
+
+
+def colors_of(array: str, span: tuple, meshes: list):
+    """The map of an array with this range, and its title."""
+    known = OWN_METRICS.get(array, array)
+    entry = settings().get("".join(c for c in known if c.isalnum() or c == "_"), {})
+    labels = {metric["name"]: metric["label"] for metric in tl.metrics()}
+    table = entry.get("PVLookupTable", {})
+    title = labels.get(array, entry.get("Title", array) if known == array else array)
+    if table.get("IndexedLookup"):
+        found = {value for mesh in meshes for value in vtk_to_numpy(array_of(mesh, array)).tolist()}
+        values, names, flat = table["Annotations"][::2], table["Annotations"][1::2], table["IndexedColors"]
+        colors = [flat[3 * i : 3 * i + 3] for i in range(len(values))]
+        kept = [row for row in zip(values, names, colors) if int(row[0]) in found]
+        return categories([int(value) for value, _, _ in kept], *map(list, zip(*((b, c) for _, b, c in kept)))), title
+    if array == "Reference":
+        found = sorted({value for mesh in meshes for value in vtk_to_numpy(array_of(mesh, array)).tolist()})
+        colors = [REGIONS[i % len(REGIONS)] for i in range(len(found))]
+        return categories(found, [str(value) for value in found], colors), title
+    if table:
+        flat = table["RGBPoints"]
+        points = [flat[i : i + 4] for i in range(0, len(flat), 4)]
+        if table.get("AutomaticRescaleRangeMode") == "Never":
+            return transfer(points, 0, 1, table), title
+        return transfer(points, *span, table), title
+    return transfer(FIELD, *span, {}), title
+
+
+def draw(window, mesh, array: str, how: list[str], colors, inside, place) -> None:
+    """One mesh; `inside` has the elements to show in a translucent surface, or is None."""
     renderer = vtkRenderer()
     renderer.SetBackground(1, 1, 1)
     renderer.SetViewport(*place)
-    if "inside" in how:
-        inside = failing(mesh, array, span[1])
-        if inside.GetNumberOfCells():
-            renderer.AddActor(actor_of(inside, surface(inside, False), array, span))
-        whole = actor_of(mesh, surface(mesh, False), "edges", None)
+    if inside is not None:
+        part = extracted(mesh, inside)
+        renderer.AddActor(actor_of(part, surface(part, False), array, colors))
+        whole = actor_of(mesh, surface(mesh, False), array, None)
         whole.GetProperty().SetOpacity(TRANSLUCENT)
+        whole.GetProperty().SetColor(0.4, 0.4, 0.4)
         whole.GetProperty().EdgeVisibilityOff()
         renderer.AddActor(whole)
     else:
-        renderer.AddActor(actor_of(mesh, surface(mesh, "clip" in how), array, span))
+        renderer.AddActor(actor_of(mesh, surface(mesh, "clip" in how), array, colors))
     bounds = mesh.GetBounds()
     camera = renderer.GetActiveCamera()
     camera.ParallelProjectionOn()
@@ -119,18 +190,16 @@ def draw(window, mesh, array: str, how: list[str], span, place) -> None:
     window.AddRenderer(renderer)
 
 
-def actor_of(mesh, shown, array: str, span) -> vtkActor:
-    """The surface of (a part of) a mesh, with its colours and edges."""
+def actor_of(mesh, shown, array: str, colors) -> vtkActor:
+    """The surface of (a part of) a mesh, with its colors and edges."""
     mapper = vtkPolyDataMapper()
     mapper.SetInputData(shown)
-    if span and array_of(mesh, array):
-        table = vtkLookupTable()
-        table.SetHueRange(*(HUES[::-1] if array in UPWARD else HUES))
-        table.SetVectorModeToMagnitude()
-        table.SetSaturationRange(0.55, 0.75)
-        table.Build()
-        mapper.SetLookupTable(table)
-        mapper.SetScalarRange(*span)
+    if colors and array_of(mesh, array):
+        values = array_of(mesh, array)
+        if values.GetNumberOfComponents() > 1:
+            colors.SetVectorModeToMagnitude()
+        mapper.SetLookupTable(colors)
+        mapper.UseLookupTableScalarRangeOn()
         if shown.GetPointData().GetArray(array):
             mapper.SetScalarModeToUsePointFieldData()
         else:
@@ -140,13 +209,63 @@ def actor_of(mesh, shown, array: str, span) -> vtkActor:
         mapper.ScalarVisibilityOff()
     actor = vtkActor()
     actor.SetMapper(mapper)
-    actor.GetProperty().SetColor(0.82, 0.86, 0.92)
+    actor.GetProperty().SetColor(*MESH)
     if not mesh.IsA("vtkImageData"):
         actor.GetProperty().EdgeVisibilityOn()
-    actor.GetProperty().SetEdgeColor(0.2, 0.2, 0.25)
+    actor.GetProperty().SetEdgeColor(0.25, 0.25, 0.25)
     actor.GetProperty().SetLineWidth(0.6)
     actor.GetProperty().SetAmbient(0.3)
     return actor
+
+
+def text_at(renderer, text: str, x: float, y: float, centred: bool, background=None) -> None:
+    actor = vtkTextActor()
+    if background:
+        actor.GetTextProperty().SetBackgroundColor(background)
+        actor.GetTextProperty().SetBackgroundOpacity(1)
+    actor.SetInput(text)
+    actor.GetPositionCoordinate().SetCoordinateSystemToNormalizedViewport()
+    actor.SetPosition(x, y)
+    actor.GetTextProperty().SetColor([float(bool(background) and sum(background) < DARK)] * 3)
+    actor.GetTextProperty().SetFontSize(14)
+    actor.GetTextProperty().SetVerticalJustificationToCentered()
+    if centred:
+        actor.GetTextProperty().SetJustificationToCentered()
+    renderer.AddActor(actor)
+
+
+def add_legend(window, colors, title: str, names: list[str]) -> None:
+    """Below the meshes: before, after, and a bar with the colors."""
+    renderer = vtkRenderer()
+    renderer.SetBackground(1, 1, 1)
+    renderer.SetViewport(0, 0, 1, LEGEND)
+    window.AddRenderer(renderer)
+    for i, name in enumerate(names):
+        text_at(renderer, name, (i + 0.5) / len(names), 0.85, True)
+    if not colors:
+        return
+    text_at(renderer, title, 0.02, 0.3, False)
+    if colors.GetIndexedLookup():
+        count = colors.GetNumberOfTableValues()
+        for i in range(count):
+            place = 0.45 + 0.5 * (i + 0.5) / count
+            text_at(renderer, f"  {colors.GetAnnotation(i)}  ", place, 0.3, True, colors.GetTableValue(i)[:3])
+        return
+    bar = vtkScalarBarActor()
+    bar.SetLookupTable(colors)
+    bar.SetOrientationToHorizontal()
+    bar.SetNumberOfLabels(3)
+    bar.SetLabelFormat("%.3g")
+    bar.UnconstrainedFontSizeOn()
+    for style in (bar.GetLabelTextProperty(), bar.GetAnnotationTextProperty()):
+        style.SetColor(0, 0, 0)
+        style.SetFontSize(12)
+        style.SetBold(False)
+        style.SetItalic(False)
+        style.SetShadow(False)
+    bar.SetPosition(0.5, 0.0)
+    bar.SetPosition2(0.46, 0.62)
+    renderer.AddActor(bar)
 
 
 def make_picture(folder: Path, what: str, file: Path) -> None:
@@ -158,14 +277,19 @@ def make_picture(folder: Path, what: str, file: Path) -> None:
     arrays = [array_of(mesh, array) for mesh in meshes]
     ranges = [values.GetRange(-1 if values.GetNumberOfComponents() > 1 else 0) for values in arrays if values]
     span = (min(r[0] for r in ranges), max(r[1] for r in ranges)) if ranges else None
-    if span and array == "imr":
-        span = (1, 3)  # of the inverse mean ratio, where most solvers begin to suffer
+    colors, title = colors_of(array, span, [m for m in meshes if array_of(m, array)]) if span else (None, "")
+    shown = [None] * len(meshes)
+    if "inside" in how:  # after, the same elements: a mesh whose defects are gone is not an empty surface
+        shown = [failing(meshes[0], array, colors.GetRange()[1])] * len(meshes)
+        assert len({mesh.GetNumberOfCells() for mesh in meshes}) == 1, what
     window = vtkRenderWindow()
     window.OffScreenRenderingOn()
     window.SetMultiSamples(0)
     window.SetSize(*SIZE)
     for i, mesh in enumerate(meshes):
-        draw(window, mesh, array, how, span, (i / len(meshes), 0, (i + 1) / len(meshes), 1))
+        place = (i / len(meshes), LEGEND, (i + 1) / len(meshes), 1)
+        draw(window, mesh, array, how, colors, shown[i], place)
+    add_legend(window, colors, title, ["before", "after"] if len(meshes) > 1 else [])
     window.Render()
     image = vtkWindowToImageFilter()
     image.SetInput(window)
@@ -173,12 +297,7 @@ def make_picture(folder: Path, what: str, file: Path) -> None:
     writer.SetInputConnection(image.GetOutputPort())
     writer.SetFileName(str(file))
     writer.Write()
-    for colours in (COLOURS, COLOURS // 3):
-        small = Image.open(file).convert("RGB").quantize(colours)
-        small.save(file, optimize=True)
-        if file.stat().st_size <= MOST_BYTES:
-            return
-    raise SystemExit(f"{file} has {file.stat().st_size} bytes, {MOST_BYTES} are allowed")
+    write_smooth(read(file), file, COLORS, MOST_BYTES)
 
 
 def main(data: Path, chosen: list[str]) -> None:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the plugin does when it is loaded, as far as it needs no ParaView.
+// The plugin's actions when it is loaded, as far as they need no ParaView.
 #include "ColorMaps.h"
 #include "Registry.h"
 #include "VersionCheck.h"
@@ -38,9 +38,9 @@ TAUTLINE_PART(testColorMapSettings)
   TAUTLINE_CHECK(has("[1, 0.84, 0.90, 0.93, 1.9, ")); // pale at the low end
   TAUTLINE_CHECK(has("\"UseBelowRangeColor\": 1, \"BelowRangeColor\": [0.05, 0.35, 1]"));
   TAUTLINE_CHECK(has("\"Validity\""));
-  // imr is a metric: an increase by half the range, 1.5, is as red as it gets, a decrease green.
+  // imr is a metric: an increase by half the range, 1.5, is as orange as it gets, a decrease green.
   TAUTLINE_CHECK(has("\"imr_difference\""));
-  TAUTLINE_CHECK(has("[-1.5, 0.10, 0.52, 0.30, 0, 0.90, 0.90, 0.90, 1.5, 0.72, 0.06, 0.11]"));
+  TAUTLINE_CHECK(has("[-1.5, 0.10, 0.52, 0.30, 0, 0.90, 0.90, 0.90, 1.5, 0.78, 0.40, 0.05]"));
   TAUTLINE_CHECK(has("\"TMPshape\"") && has("\"TMP shape\": { \"Title\": "));
   TAUTLINE_CHECK(!has("inf") && !has("nan"));
 }
