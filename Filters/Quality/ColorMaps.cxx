@@ -118,7 +118,7 @@ std::string metricTable(const ColorMapSpec& spec)
   return entry(spec.array, spec.title, json.str());
 }
 
-/// Green where the metric became better by half its acceptable range or more, brown where worse.
+/// Green where the metric became better by half its acceptable range or more, orange where worse.
 std::string differenceTable(const ColorMapSpec& spec)
 {
   const double end = 0.5 * std::abs(spec.bad - spec.good);

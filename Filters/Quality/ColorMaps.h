@@ -9,8 +9,8 @@
  * element is blue if the sign of the metric shows inversion. Nothing else is blue, and nothing is
  * magenta, the color of ParaView's selections. The range is fixed, so that a color means the same
  * quality in every picture, before and after. Differences of a metric are green if the element
- * became better, brown if it became worse. A size, for which neither small nor large is good, keeps
- * ParaView's own map. The legends have the metric's label.
+ * became better, orange if it became worse. A size, for which neither small nor large is good,
+ * keeps ParaView's own map. The legends have the metric's label.
  */
 
 #ifndef tautline_ColorMaps_h
