@@ -25,6 +25,7 @@ from property_table import find_files, read_proxies, table_of
 
 HERE = Path(__file__).resolve().parent
 INDEX = "filters"
+HELP_WIDTH = 860  # pixels of a picture in ParaView's help
 MAX_WORDS = 1200  # of a page before its Details
 BEHIND = re.compile(r"^## (?:Details|Properties)$", re.MULTILINE)
 PLACE = re.compile(r"<!-- properties: (\S+) -->\n(?:\*.*\*\n)?")  # with the line that stands for the table
@@ -76,12 +77,20 @@ def with_tables(text: str, proxies: dict, page: str) -> str:
     return PLACE.sub(fill, text)
 
 
+def sized(match) -> str:
+    """The tag of a picture; a wide one gets the width that fits into ParaView's help."""
+    path = HERE / match[1]
+    wide = path.suffix == ".png" and int.from_bytes(path.read_bytes()[16:20], "big") > HELP_WIDTH
+    return f'{match[0]} width="{HELP_WIDTH}"' if wide else match[0]
+
+
 def to_html(text: str) -> str:
     """The body of a page of Markdown; its headings have anchors."""
     from markdown_it import MarkdownIt  # not needed for the checks
 
     plain = FORMULA.sub(lambda match: f"<p><code>{html.escape(match[1])}</code></p>\n", text)
     body = MarkdownIt("commonmark", {"html": True}).enable("table").render(plain)
+    body = re.sub(r'<img src="([^"]+)"', sized, body)
     return HEADING.sub(lambda match: f'<h{match[1]}><a name="{slug(match[2])}"></a>{match[2]}</h{match[1]}>', body)
 
 
