@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """pvpython make_overview.py PLUGIN: draws overview.png, the picture of README.md and of the help's first page.
 
-Left the sample plate after Perturb Mesh, right the tangled sample bracket, both coloured by their quality.
+Left the sample plate after Perturb Mesh, right the tangled sample bracket, both colored by their quality.
 """
 
 import sys
@@ -81,9 +81,9 @@ def shrink() -> None:
     reader = vtkPNGReader()
     reader.SetFileName(str(PICTURE))
     reader.Update()
-    colours = vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars())
+    colors = vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars())
     step = 256 // SHADES
-    colours[:] = ((colours.astype(int) + step // 2) // step * step).clip(0, 255)
+    colors[:] = ((colors.astype(int) + step // 2) // step * step).clip(0, 255)
     writer = vtkPNGWriter()
     writer.SetCompressionLevel(9)
     writer.SetFileName(str(PICTURE))

@@ -2,8 +2,8 @@
 """pvpython make_pictures.py PLUGIN [NAME...]: draws the pictures of the help pages, NAME.png, or those named.
 
 Each function below draws the picture of its name, mostly the picture of the page of this name; what it returns is
-saved. The colours: pale is good, dark red is bad, blue is inverted and nothing else; a change is green or orange, other
-fields go from pale to dark green, regions have colours of REGIONS.
+saved. The colors: pale is good, dark red is bad, blue is inverted and nothing else; a change is green or orange, other
+fields go from pale to dark green, regions have colors of REGIONS.
 """
 
 import math
@@ -34,7 +34,7 @@ SMOOTH = ("before_after", "warp_mesh")  # pictures with as many shades as there 
 CELLS, POINTS = 1, 0
 FLAT, LIT, BRIGHT = (1, 0), (0.6, 0.5), (0.75, 0.35)  # ambient and diffuse light
 DARK = [0.25, 0.25, 0.25]
-PLAIN = [0.80, 0.80, 0.77]  # a mesh without colours
+PLAIN = [0.80, 0.80, 0.77]  # a mesh without colors
 RED = [0.8, 0.2, 0.15]
 DARK_RED = [0.72, 0.06, 0.11]  # bad, as in Filters/Quality/ColorMaps.cxx
 BLUE = [0.05, 0.35, 1.0]  # inverted, as in Filters/Quality/ColorMaps.h
@@ -65,8 +65,8 @@ def new_view(camera=None):
     return view
 
 
-def draw(source, view, array=None, where=CELLS, light=FLAT, edges=True, colour=None, opacity=1.0):
-    """Shows the source; with an array in its colours, else in one colour."""
+def draw(source, view, array=None, where=CELLS, light=FLAT, edges=True, color=None, opacity=1.0):
+    """Shows the source; with an array in its colors, else in one color."""
     display = simple.Show(source, view)
     display.Representation = "Surface With Edges" if edges else "Surface"
     display.EdgeColor = DARK
@@ -76,7 +76,7 @@ def draw(source, view, array=None, where=CELLS, light=FLAT, edges=True, colour=N
         display.SetScalarColoring(array, where)
     else:
         display.ColorArrayName = [None, ""]
-        display.AmbientColor = display.DiffuseColor = colour or PLAIN
+        display.AmbientColor = display.DiffuseColor = color or PLAIN
     return display
 
 
@@ -106,11 +106,11 @@ def side_by_side(*views, size=(WIDE, HEIGHT)):
     return layout, size
 
 
-def field(array, low, high, colours=FIELD):
-    """Colours of an array between two values."""
+def field(array, low, high, colors=FIELD):
+    """Colors of an array between two values."""
     table = simple.GetColorTransferFunction(array)
-    places = [low + i * (high - low) / (len(colours) - 1) for i in range(len(colours))]
-    table.RGBPoints = [number for place, rgb in zip(places, colours) for number in (place, *rgb)]
+    places = [low + i * (high - low) / (len(colors) - 1) for i in range(len(colors))]
+    table.RGBPoints = [number for place, rgb in zip(places, colors) for number in (place, *rgb)]
     table.ColorSpace, table.AutomaticRescaleRangeMode = "Lab", "Never"
 
 
@@ -123,7 +123,7 @@ def field_of(source, array, where=POINTS):
 
 
 def regions(array, numbers):
-    """A colour for each number."""
+    """A color for each number."""
     table = simple.GetColorTransferFunction(array)
     table.InterpretValuesAsCategories = 1
     table.Annotations = [text for number in numbers for text in (str(number), str(number))]
@@ -139,7 +139,7 @@ def numbers_in(mesh, array) -> list:
 
 def draw_around(mesh, view):
     """The surface of a mesh, translucent."""
-    return draw(simple.ExtractSurface(Input=mesh), view, edges=False, opacity=INSIDE, light=LIT, colour=SHADOW)
+    return draw(simple.ExtractSurface(Input=mesh), view, edges=False, opacity=INSIDE, light=LIT, color=SHADOW)
 
 
 def cut(mesh, front=0):
@@ -194,24 +194,24 @@ def text_in(view, text, place, size=18):
     note.WindowLocation, note.Position = "Any Location", list(place)
 
 
-def swatch(view, left, right, colour=None):
-    """A rectangle of the legend; without a colour the colours of the inverse mean ratio from 1 to 3."""
+def swatch(view, left, right, color=None):
+    """A rectangle of the legend; without a color the colors of the inverse mean ratio from 1 to 3."""
     plane = simple.Plane(Origin=[left, 0.3, 0], Point1=[right, 0.3, 0], Point2=[left, 0.75, 0], XResolution=200)
-    if colour:
-        return draw(plane, view, edges=False, colour=colour)
+    if color:
+        return draw(plane, view, edges=False, color=color)
     formula = f"1+2*(coordsX-{left})/{right - left}"
     rising = simple.Calculator(Input=plane, Function=formula, ResultArrayName="imr")
     return draw(rising, view, "imr", POINTS, edges=False)
 
 
 def quality_legend(size):
-    """One row with the colours of the inverse mean ratio and words; `size` in pixels."""
+    """One row with the colors of the inverse mean ratio and words; `size` in pixels."""
     view = new_view()
     wide = size[0] / size[1]  # heights of the row
     worse = list(simple.GetColorTransferFunction("imr").AboveRangeColor)
     swatch(view, 0.27 * wide, 0.49 * wide)
-    for place, colour, text in ((0.59, worse, "worse than 3"), (0.78, BLUE, "inverted")):
-        swatch(view, place * wide, (place + 0.025) * wide, colour)
+    for place, color, text in ((0.59, worse, "worse than 3"), (0.78, BLUE, "inverted")):
+        swatch(view, place * wide, (place + 0.025) * wide, color)
         text_in(view, text, (place + 0.035, 0.3))
     for place, text in ((0.08, "Inverse mean ratio"), (0.25, "1"), (0.5, "3")):
         text_in(view, text, (place, 0.3))
@@ -285,7 +285,7 @@ def nonpositive_jacobian_1():
         quality.UpdatePipeline()
         valid = output(quality, 0).CellData["Validity"].GetRange()[0] == 1
         view = new_view()
-        draw_curved(output(quality, 0), view, colour=PLAIN if valid else BLUE)
+        draw_curved(output(quality, 0), view, color=PLAIN if valid else BLUE)
         views.append(fit(view, 1.3))
     return side_by_side(*views, size=(WIDE, 220))
 
@@ -324,10 +324,10 @@ def coarse_tube():
     return curved_mesh("tube", lattice, VTK_QUADRATIC_TETRA, cells)
 
 
-def drawn_inside(mesh, elements, colour):
+def drawn_inside(mesh, elements, color):
     view = new_view(OBLIQUE)
-    draw_curved(mesh, view, edges=False, opacity=INSIDE, light=LIT, colour=SHADOW)
-    draw_curved(elements, view, colour=colour, light=LIT)
+    draw_curved(mesh, view, edges=False, opacity=INSIDE, light=LIT, color=SHADOW)
+    draw_curved(elements, view, color=color, light=LIT)
     return fit(view, 0.95)
 
 
@@ -376,13 +376,13 @@ def improve_mesh():
         view = new_view(OBLIQUE)
         draw_cut(output(mesh, 0), view)
         if bad.GetDataInformation().GetNumberOfCells():
-            draw(bad, view, colour=DARK_RED, light=LIT)
+            draw(bad, view, color=DARK_RED, light=LIT)
         views.append(fit(view, 1.2))
     return side_by_side(*views)
 
 
 def improve_mesh_plane():
-    """Triangles, coloured by their smallest angles; the points of the first were moved at random."""
+    """Triangles, colored by their smallest angles; the points of the first were moved at random."""
     worse = simple.PerturbMesh(Input=sample("wrench.msh"), Percentage=100, Fraction=0.95)
     quality = simple.ElementQuality(Input=worse, Metrics=["Minimum angle"])
     better = simple.ImproveMesh(Input=worse, Preset="Aggressive")
@@ -480,18 +480,18 @@ def mark_turn(view, mesh, angle):
     """The hole's boundary, and an arrow along it from the first place of a point to where it moved."""
     mesh.UpdatePipeline()
     left, right, low, high, *_ = mesh.GetDataInformation().GetBounds()
-    centre = [(left + right) / 2, (low + high) / 2]
+    center = [(left + right) / 2, (low + high) / 2]
     hole = hole_of(mesh)
-    hole.ClipType.Center, hole.ClipType.Radius = [*centre, 0], 0.3 * (high - low)
+    hole.ClipType.Center, hole.ClipType.Radius = [*center, 0], 0.3 * (high - low)
     hole.UpdatePipeline()
     bounds = hole.GetDataInformation().GetBounds()
     radius = (bounds[1] - bounds[0]) / 2
-    rim = draw(hole, view, edges=False, colour=[0, 0, 0])
+    rim = draw(hole, view, edges=False, color=[0, 0, 0])
     rim.LineWidth, rim.Position = 3, [0, 0, 0.05]
 
     def at(degrees, distance):
         turn = math.radians(degrees)
-        return [centre[0] + distance * math.cos(turn), centre[1] + distance * math.sin(turn), 0.1]
+        return [center[0] + distance * math.cos(turn), center[1] + distance * math.sin(turn), 0.1]
 
     begin, end, inner, head = 60, 60 + angle, 0.68 * radius, 22
     lines = [[at(begin, 0.86 * inner), at(begin, 1.14 * inner)]]
@@ -499,7 +499,7 @@ def mark_turn(view, mesh, angle):
     lines.append([at(end - head, 0.78 * inner), at(end, inner), at(end - head, 1.22 * inner)])
     for line in lines:
         arrow = draw(simple.PolyLineSource(Points=[number for point in line for number in point]), view, edges=False,
-                     colour=[0, 0, 0])  # fmt: skip
+                     color=[0, 0, 0])  # fmt: skip
         arrow.LineWidth = 3
 
 
@@ -508,7 +508,7 @@ def warp_mesh():
     plate = sample("plate.vtu")
     angle = 120
     views = [new_view() for _ in range(3)]
-    draw(plate, views[0], colour=[1, 1, 1])
+    draw(plate, views[0], color=[1, 1, 1])
     counts = []
     for method, view in zip(("FEMWARP", "Hybrid"), views[1:]):
         turned = simple.WarpMesh(Input=plate, Method=method, TransformKind="Rotation", Angle=angle)
@@ -600,7 +600,7 @@ def field_of_metric():
     view = new_view()
     draw(field, view, "imr", POINTS, edges=False)
     for source, width in ((lines, 1), (base, 4)):
-        display = draw(source, view, edges=False, colour=[0, 0, 0])
+        display = draw(source, view, edges=False, color=[0, 0, 0])
         display.LineWidth, display.Position = width, [0, 0, 0.01]
     return side_by_side(fit(view, 1.3), size=(420, HEIGHT))
 
@@ -629,7 +629,7 @@ def triangle_mesher():
     outline = sample("plate.poly")
     mesh = simple.TriangleMesher(Input=outline, MinimumAngle=25, Size=small_edge(outline))
     left, right = new_view(), new_view()
-    draw(outline, left, edges=False, colour=[0, 0, 0]).LineWidth = 2
+    draw(outline, left, edges=False, color=[0, 0, 0]).LineWidth = 2
     draw(output(mesh, 0), right)
     return side_by_side(fit(left, 1.3), fit(right, 1.3))
 
@@ -701,9 +701,9 @@ def horizon_neighbors():
     square = simple.MeshDomain(Domain="Rectangle, Structured", NumberOfCells=400)
     near = simple.HorizonNeighbors(Input=output(square, 0), Center=[1.03, 0.52, 0], Horizon=0.2)
     view = new_view()
-    draw(output(square, 0), view, colour=[1, 1, 1])
+    draw(output(square, 0), view, color=[1, 1, 1])
     draw(output(near, 0), view, "Case").Position = [0, 0, 0.01]
-    circle = draw(output(near, 1), view, edges=False, colour=[0, 0, 0])
+    circle = draw(output(near, 1), view, edges=False, color=[0, 0, 0])
     circle.LineWidth, circle.Position = 3, [0, 0, 0.02]
     return side_by_side(fit(view, 2.2), size=(420, HEIGHT))
 

@@ -167,7 +167,7 @@ def openfoam_mesh():
     assert faces.GetDataInformation().GetNumberOfCells() == 25
     failing = new_view(OBLIQUE)
     draw_around(output(quality, 0), failing)
-    draw(faces, failing, colour=RED, light=LIT)
+    draw(faces, failing, color=RED, light=LIT)
     better = simple.OptimizeMesh(Input=case, Preset="Finite volumes")
     assert "checkMesh before: Failed 5 mesh checks. After: Mesh OK." in summary(better), better.Summary
     checked = simple.ElementQuality(Input=output(better, 0), **measures)
