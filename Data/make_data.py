@@ -17,8 +17,8 @@ TANGLED = 0.005  # part of the elements
 
 # --- bracket: an L of sheet metal with a fillet and three bolt holes, lengths in mm ---------------------
 LENGTH, HEIGHT, WIDTH, THICK, FILLET = 60.0, 50.0, 40.0, 8.0, 8.0
-BASE_HOLES = [((45.0, 10.0), 4.0), ((45.0, 30.0), 4.0)]  # centres (x, y) and radii, along z
-UPRIGHT_HOLE = ((20.0, 33.0), 9.0)  # centre (y, z) and radius, along x
+BASE_HOLES = [((45.0, 10.0), 4.0), ((45.0, 30.0), 4.0)]  # centers (x, y) and radii, along z
+UPRIGHT_HOLE = ((20.0, 33.0), 9.0)  # center (y, z) and radius, along x
 ROUND, BEND = 24, 6  # edges of a circle and of the fillet
 MAX_VOLUME, MAX_RATIO = 16.0, 1.4
 

@@ -199,7 +199,9 @@ void addColors(const MetricHistogram& histogram, HistogramLayout& layout)
   const auto map = std::find_if(maps.begin(), maps.end(),
     [&histogram](const ColorMapSpec& spec) { return spec.array == histogram.metric; });
   const bool known = map != maps.end();
-  const bool badIsRight = !known || map->bad > map->good;
+  const MetricInfo* info = findMetric(histogram.metric);
+  const bool largerIsBetter = info && info->direction == Direction::LargerIsBetter;
+  const bool badIsRight = known ? map->bad > map->good : !largerIsBetter;
   for (const HistogramBar& bar : histogram.bars)
   {
     const bool goodSide = bar.kind == (badIsRight ? HistogramBar::Below : HistogramBar::Above);
@@ -249,7 +251,9 @@ std::string criteriaJson(const std::string& text)
   {
     return text;
   }
-  if (std::filesystem::is_regular_file(text, ignored))
+  const auto& presets = criteriaPresets();
+  const bool preset = std::find(presets.begin(), presets.end(), text) != presets.end();
+  if (!preset && std::filesystem::is_regular_file(text, ignored))
   {
     std::ifstream file(text);
     return { std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>() };
@@ -405,7 +409,9 @@ std::string describeColors(const MetricHistogram& histogram, const MetricHistogr
   const bool degenerate = has(HistogramBar::Degenerate);
   const bool outside = judged && (has(HistogramBar::Below) || has(HistogramBar::Above));
   std::vector<std::string> sentences;
-  if (judged)
+  // Where the metric has no range, the bars have that of the values.
+  const auto isRange = [](const Range& range) { return range.low < range.high; };
+  if (judged && (isRange(info->acceptable2D) || isRange(info->acceptable3D)))
   {
     sentences.push_back(
       "Acceptable: " + shortNumber(first->low) + " to " + shortNumber(last->high) + ".");

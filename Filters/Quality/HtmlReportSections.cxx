@@ -113,9 +113,23 @@ vtkSmartPointer<vtkTable> changesIn(vtkTable* comparison)
 }
 
 //------------------------------------------------------------------------------
+bool vtkHtmlReport::IsSide(int side)
+{
+  if (side == BEFORE || side == AFTER)
+  {
+    return true;
+  }
+  vtkErrorMacro(<< "There is no side " << side << ": choose BEFORE or AFTER.");
+  return false;
+}
+
+//------------------------------------------------------------------------------
 void vtkHtmlReport::SetFile(int side, const char* name)
 {
-  this->BothSides.at(side).File = name ? name : "";
+  if (this->IsSide(side))
+  {
+    this->BothSides.at(side).File = name ? name : "";
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -144,13 +158,27 @@ void vtkHtmlReport::SetQuality(int side, vtkElementQuality* measured)
 //------------------------------------------------------------------------------
 void vtkHtmlReport::SetQualityOutput(int side, const char* output, vtkDataObject* data)
 {
-  this->BothSides.at(side).Outputs[output ? output : ""] = data;
+  if (!this->IsSide(side))
+  {
+    return;
+  }
+  // A copy: the filter may be run again for the other side.
+  vtkSmartPointer<vtkDataObject> copy;
+  if (data)
+  {
+    copy.TakeReference(data->NewInstance());
+    copy->ShallowCopy(data);
+  }
+  this->BothSides.at(side).Outputs[output ? output : ""] = copy;
 }
 
 //------------------------------------------------------------------------------
 void vtkHtmlReport::SetQualitySummary(int side, const char* text)
 {
-  this->BothSides.at(side).Summary = text ? text : "";
+  if (this->IsSide(side))
+  {
+    this->BothSides.at(side).Summary = text ? text : "";
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -168,7 +196,7 @@ void vtkHtmlReport::AddResultTable(const char* name, vtkTable* table)
 //------------------------------------------------------------------------------
 vtkDataObject* vtkHtmlReport::Output(int side, const char* name) const
 {
-  const auto& outputs = this->BothSides.at(side).Outputs;
+  const auto& outputs = this->BothSides.at(side).Outputs; // a side of this class's own choice
   const auto found = outputs.find(name);
   return found == outputs.end() ? nullptr : found->second.Get();
 }

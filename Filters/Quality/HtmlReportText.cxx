@@ -131,7 +131,8 @@ std::string htmlRow(const std::vector<std::string>& cells, const char* tag)
 std::string readableName(const std::string& column)
 {
   const std::string quantile = "Quantile";
-  if (column.rfind(quantile, 0) == 0 && column.size() == quantile.size() + 2)
+  if (column.rfind(quantile, 0) == 0 && column.size() == quantile.size() + 2 &&
+    column.find_first_not_of("0123456789", quantile.size()) == std::string::npos)
   {
     return std::to_string(std::stoi(column.substr(quantile.size()))) + " % quantile";
   }

@@ -136,6 +136,7 @@ private:
   void operator=(const vtkHtmlReport&) = delete;
 
   void Add(const std::string& html);
+  bool IsSide(int side); ///< else an error
   vtkDataObject* Output(int side, const char* name) const;
   vtkTable* Table(int side, const char* name) const;
   bool IsComparison() const;

@@ -304,7 +304,7 @@ DEFECTS = [
 
 def main(write_all: bool, names: list) -> int:
     lines = PAGE.read_text(encoding="utf-8").split("\n") if PAGE.exists() else []
-    wrong = []
+    wrong = [f"there is no defect {name}" for name in names if name not in {defect.name for defect in DEFECTS}]
     for defect in DEFECTS:
         if names and defect.name not in names:
             continue
@@ -324,7 +324,7 @@ def main(write_all: bool, names: list) -> int:
             write(defect.picture(), HERE / picture)
     if write_all:
         PAGE.write_text("\n".join(lines), encoding="utf-8")
-        return 0
+        wrong = [problem for problem in wrong if "has other numbers" not in problem]  # written now
     print("\n".join(wrong))
     return 1 if wrong else 0
 

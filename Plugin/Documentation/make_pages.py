@@ -4,7 +4,7 @@
 python3 make_pages.py BUILD              checks the pages against the XML of the build tree: one page for each proxy,
                                          the function and the class of each entry of filters.md, and the number of words
 python3 make_pages.py --help-pages OUTPUT XML...    the pages for ParaView's help, with tables of the XML's properties
-python3 make_pages.py --contents FILE XML...        the table of contents: the pages in the order of filters.md
+python3 make_pages.py --contents FILE               the table of contents: the pages in the order of filters.md
 
 A page has the table of properties of a proxy at the comment <!-- properties: filters.ElementQuality -->. ParaView's
 button ? opens the page named after the proxy, here filters.ElementQuality.html. So the help has each page under the
@@ -120,11 +120,11 @@ def check(proxies: dict, pages: dict) -> int:
     return 1 if wrong or not proxies or not listed else 0
 
 
-def make_contents(file: Path, proxies: dict, pages: dict) -> int:
+def make_contents(file: Path, pages: dict) -> int:
     """ParaView's table of contents; each page by the name that it has in the help."""
     lines = []
     for page in dict.fromkeys(re.findall(r"\]\((\w+)\.md\)", pages[INDEX])):
-        names = [name for name in proxies_of(pages[page]) if name in proxies]
+        names = proxies_of(pages[page])
         title = html.escape(title_of(pages[page]), quote=False)
         lines.append(f'    <section title="{title}" ref="{names[0] if names else page}.html"/>\n')
     head = '<toc>\n  <section title="Tautline" ref="index.html">\n'
@@ -162,7 +162,7 @@ def main(arguments: list) -> int:
     if arguments[0] == "--help-pages":
         return make_help(Path(arguments[1]), read_proxies(arguments[2:]), pages)
     if arguments[0] == "--contents":
-        return make_contents(Path(arguments[1]), read_proxies(arguments[2:]), pages)
+        return make_contents(Path(arguments[1]), pages)
     return check(read_proxies(find_files(Path(arguments[0]))), pages)
 
 

@@ -46,7 +46,7 @@ SectionHeader::SectionHeader(const QString& text, vtkSMProxy* proxy, QWidget* pa
   this->hide();
   this->Later.setSingleShot(true);
   this->Later.setInterval(0);
-  QObject::connect(&this->Later, &QTimer::timeout, this, &SectionHeader::update);
+  QObject::connect(&this->Later, &QTimer::timeout, this, &SectionHeader::showContent);
   QObject::connect(this, &QToolButton::toggled, this, &SectionHeader::open);
   panel->installEventFilter(this);
 }
@@ -127,7 +127,7 @@ bool SectionHeader::hasContent() const
 }
 
 //------------------------------------------------------------------------------
-void SectionHeader::update()
+void SectionHeader::showContent()
 {
   this->setVisible(this->hasContent());
 }

@@ -45,7 +45,7 @@ public:
 
 private Q_SLOTS:
   void open(bool checked);
-  void update();
+  void showContent();
 
 private:
   bool eventFilter(QObject* panel, QEvent* event) override;

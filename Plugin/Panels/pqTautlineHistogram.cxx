@@ -112,8 +112,6 @@ pqTautlineHistogram::pqTautlineHistogram(
   bins->setRange(1, MostBins);
   bins->setToolTip(pqPropertyWidget::getTooltip(smgroup->GetProperty("HistogramBins")));
   this->addPropertyLink(bins, "HistogramBins");
-  QObject::connect(
-    bins, QOverload<int>::of(&QSpinBox::valueChanged), this, &pqTautlineHistogram::changeAvailable);
   this->Bins->setObjectName("Bins");
   auto* binsRow = new QHBoxLayout(this->Bins);
   binsRow->setContentsMargins(0, 0, 0, 0);

@@ -95,8 +95,6 @@ pqTautlineMetrics::pqTautlineMetrics(
     this->Observer->Connect(this->Domain, vtkCommand::DomainModifiedEvent, this, SLOT(fill()));
   }
   this->addPropertyLink(this, "values", SIGNAL(valuesChanged()), smproperty);
-  QObject::connect(
-    this, &pqTautlineMetrics::valuesChanged, this, &pqTautlineMetrics::changeAvailable);
   this->openChosen();
 
   auto* model = pqApplicationCore::instance()->getServerManagerModel();
@@ -144,7 +142,11 @@ void pqTautlineMetrics::fill()
       }
     }
   }
-  this->setValues(chosen);
+  {
+    // The choice is the same: it is not a change that the user could apply.
+    const QSignalBlocker unchanged(this);
+    this->setValues(chosen);
+  }
   this->openChosen();
   this->narrow(this->Filter->text());
 }

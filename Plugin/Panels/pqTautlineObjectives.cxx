@@ -19,6 +19,7 @@
 #include <QGridLayout>
 #include <QHBoxLayout>
 #include <QLabel>
+#include <QPointer>
 #include <QSpinBox>
 #include <QStandardItemModel>
 #include <QToolButton>
@@ -104,17 +105,13 @@ pqTautlineObjectives::pqTautlineObjectives(
   for (const Row& row : this->Rows)
   {
     boxes.insert(boxes.end(), { row.metric, row.objectiveTemplate, row.target });
-    QObject::connect(row.weight, &pqDoubleLineEdit::textChangedAndEditingFinished, this,
-      &pqTautlineObjectives::changeAvailable);
   }
   for (QComboBox* box : boxes)
   {
     QObject::connect(box, changed, this, &pqTautlineObjectives::refresh);
-    QObject::connect(box, changed, this, &pqTautlineObjectives::changeAvailable);
   }
   const auto counted = QOverload<int>::of(&QSpinBox::valueChanged);
   QObject::connect(this->Number, counted, this, &pqTautlineObjectives::refresh);
-  QObject::connect(this->Number, counted, this, &pqTautlineObjectives::changeAvailable);
   this->refresh();
 }
 
@@ -206,7 +203,8 @@ pqTautlineObjectives::Row pqTautlineObjectives::makeRow(int number)
 void pqTautlineObjectives::edit()
 {
   const QStringList before = this->state();
-  if (this->Dialog->exec() != QDialog::Accepted)
+  const QPointer<pqTautlineObjectives> panel(this); // the filter may be deleted meanwhile
+  if (this->Dialog->exec() != QDialog::Accepted && panel)
   {
     this->setState(before);
   }

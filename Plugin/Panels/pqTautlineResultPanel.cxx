@@ -25,6 +25,7 @@
 #include <QEvent>
 #include <QHBoxLayout>
 #include <QLabel>
+#include <QPointer>
 #include <QRegularExpression>
 #include <QScrollBar>
 #include <QStringList>
@@ -309,7 +310,9 @@ void pqTautlineResultPanel::saveReport()
     thisComputer, pqCoreUtilities::mainWidget(), "Save Report", QString(), "HTML (*.html)", false);
   dialog.setObjectName("SaveReportDialog");
   dialog.setFileMode(pqFileDialog::AnyFile);
-  if (this->source() && dialog.exec() == QDialog::Accepted && !dialog.getSelectedFiles().isEmpty())
+  const QPointer<pqTautlineResultPanel> panel(this); // the filter may be deleted meanwhile
+  if (this->source() && dialog.exec() == QDialog::Accepted && panel && this->source() &&
+    !dialog.getSelectedFiles().isEmpty())
   {
     const QString html =
       tautline::reportOf(this->source(), pqActiveObjects::instance().activeView());

@@ -87,8 +87,6 @@ pqTautlineSelection::pqTautlineSelection(
   this->addPropertyLink(this->Input, "selection", SIGNAL(selectionChanged(pqSMProxy)), smproperty);
   QObject::connect(
     this->Input, &pqSelectionInputWidget::selectionChanged, this, &pqTautlineSelection::refresh);
-  QObject::connect(this->Input, &pqSelectionInputWidget::selectionChanged, this,
-    &pqTautlineSelection::changeAvailable);
   QObject::connect(this->Clear, &QToolButton::clicked, this, &pqTautlineSelection::clear);
   this->refresh();
 }
@@ -140,8 +138,10 @@ QString pqTautlineSelection::describe(vtkSMProxy* selection)
   {
     return "a query or region";
   }
-  return cells.isEmpty() ? (points.isEmpty() ? "none" : points)
-                         : cells + (points.isEmpty() ? "" : ", " + points);
+  vtkSMProperty* inside = selection->GetProperty("InsideOut");
+  const QString most = inside && vtkSMPropertyHelper(inside).GetAsInt() ? "all but " : "";
+  return cells.isEmpty() ? (points.isEmpty() ? "none" : most + points)
+                         : most + cells + (points.isEmpty() ? "" : ", " + points);
 }
 
 //------------------------------------------------------------------------------

@@ -126,7 +126,7 @@ std::vector<vtkDataSet*> leavesOf(vtkDataObject* data)
   return leaves;
 }
 
-/// The highest dimension of the first cells.
+/// The highest dimension of the cells.
 int dimensionOf(vtkDataObject* mesh)
 {
   int dimension = 0;

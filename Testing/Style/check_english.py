@@ -7,6 +7,8 @@ comments and strings with several words are checked, not names; other files are 
 marks or backticks, and parts of names and paths, are not spelling errors.
 """
 
+from __future__ import annotations
+
 import re
 import sys
 from collections import Counter
@@ -103,7 +105,7 @@ def hits(text: str, language: str | None) -> list[tuple[int, str, str]]:
 
 
 def sources(top: Path):
-    for path in [*top.iterdir(), *(path for name in DIRECTORIES for path in (top / name).rglob("*"))]:
+    for path in [*top.iterdir(), *(path for name in (*DIRECTORIES, "Data") for path in (top / name).rglob("*"))]:
         if path.suffix in LANGUAGES or path.suffix in PLAIN or path.name in NAMES:
             if path.is_file() and not SKIPPED.match(path.relative_to(top).as_posix()):
                 yield path

@@ -51,6 +51,8 @@ def changed(top: Path) -> list[str]:
     """Files that differ from the main branch, committed or not."""
     bases = (git(top, "merge-base", branch, "HEAD") for branch in MAIN)
     base = next((lines[0] for lines in bases if lines), "HEAD")
+    if not git(top, "rev-parse", "--verify", base):
+        sys.exit(f"git cannot read {top}: name the sources, or give --all")
     return git(top, "diff", "--name-only", base) + git(top, "ls-files", "--others", "--exclude-standard")
 
 
@@ -102,6 +104,9 @@ def main(top: Path, build: Path, arguments: list[str]) -> int:
             return 1
     else:
         names = chosen(changed(top), sources)
+    if not sources:
+        print("the compile commands have no source of this tree", file=sys.stderr)
+        return 1
     start = time.monotonic()
     count = check(names, sources, top)
     print(f"{len(names)} of {len(sources)} sources, {count} findings, {time.monotonic() - start:.0f} s")
