@@ -143,7 +143,7 @@ def play(build: Path, folder: Path) -> None:
     plugin = next(build.glob("lib/paraview-*/plugins/Tautline"))
     environment = {
         **os.environ, "TAUTLINE_SCREENSHOTS": str(folder), "TAUTLINE_GUI": str(GUI), "LIBGL_ALWAYS_SOFTWARE": "1",
-        "TAUTLINE_WIDGETS": str(build / "lib" / "libTautlineWidgetPlaces.so"), "TAUTLINE_DATA_DIR": str(DATA),
+        "TAUTLINE_WIDGETS": str(build / "Testing/Gui/libTautlineWidgetPlaces.so"), "TAUTLINE_DATA_DIR": str(DATA),
         "TAUTLINE_SAMPLE": str(DATA / "bracket-tangled.vtu"), "TAUTLINE_TEST_DIR": str(folder),
         "TAUTLINE_SAMPLE_SCRIPT": str(HERE.parent / "open_sample.py"),
         "PARAVIEW_TEST_BASELINE_DIR": str(HERE.parents[1] / "Testing" / "Baseline"),

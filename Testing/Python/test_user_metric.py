@@ -216,7 +216,7 @@ def test_python_file():
     assert tl.load_metrics(str(file)) == ["of_file"], "it is replaced"
     assert (tl.quality(PLATE, "of_file").values["of_file"] == 2).all()
     for wrong, message in (("1 / 0", "ZeroDivisionError"), ("x = (", "SyntaxError"), (text.replace("of_file", "imr"),
-                           "there is a metric 'imr'")):  # fmt: skip
+                           "there already is a metric 'imr'")):  # fmt: skip
         file.write_text(wrong.format(0.0), encoding="utf-8")
         rejected(message, tl.load_metrics, file)
         rejected(str(file), tl.load_metrics, file)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TransferCells.h
- * @brief Transfers cell values to another mesh as means over the overlapped cells. Internal: not
- * installed.
+ * @brief Transfers cell values to another mesh as means over the overlapped cells.
+ * Internal: not installed.
  */
 #ifndef tautline_TransferCells_h
 #define tautline_TransferCells_h

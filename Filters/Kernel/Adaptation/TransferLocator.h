@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TransferLocator.h
- * @brief The position in a mesh nearest to a point. Internal: not installed.
+ * @brief The position in a mesh nearest to a point.
+ * Internal: not installed.
  */
 #ifndef tautline_TransferLocator_h
 #define tautline_TransferLocator_h

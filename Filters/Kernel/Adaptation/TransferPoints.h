@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TransferPoints.h
- * @brief Transfers point values to another mesh by a limited L2 projection. Internal: not
- * installed.
+ * @brief Transfers point values to another mesh by a limited L2 projection.
+ * Internal: not installed.
  */
 #ifndef tautline_TransferPoints_h
 #define tautline_TransferPoints_h

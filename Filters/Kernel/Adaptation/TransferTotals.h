@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TransferTotals.h
- * @brief Field totals, and adjustment of values to a given total. Internal: not installed.
+ * @brief Field totals, and adjustment of values to a given total.
+ * Internal: not installed.
  */
 #ifndef tautline_TransferTotals_h
 #define tautline_TransferTotals_h

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file FlatPart.h
- * @brief Detects flat patches and straight curves. Internal: not installed.
+ * @brief Detects flat patches and straight curves.
+ * Internal: not installed.
  */
 #ifndef tautline_FlatPart_h
 #define tautline_FlatPart_h

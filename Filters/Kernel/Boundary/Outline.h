@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Outline.h
- * @brief The curves and corners of an outline made of lines. Internal: not installed.
+ * @brief The curves and corners of an outline made of lines.
+ * Internal: not installed.
  */
 #ifndef tautline_Outline_h
 #define tautline_Outline_h

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BisectionTree.h
- * @brief Planes that divide locations into parts by recursive bisection. Internal: not installed.
+ * @brief Planes that divide locations into parts by recursive bisection.
+ * Internal: not installed.
  */
 #ifndef tautline_BisectionTree_h
 #define tautline_BisectionTree_h

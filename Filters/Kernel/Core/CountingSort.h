@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CountingSort.h
- * @brief A stable, multithreaded counting sort. Internal: not installed.
+ * @brief A stable, multithreaded counting sort.
+ * Internal: not installed.
  */
 #ifndef tautline_CountingSort_h
 #define tautline_CountingSort_h

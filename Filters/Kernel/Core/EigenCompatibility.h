@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file EigenCompatibility.h
- * @brief The differences between Eigen 3.4 and 5. Internal: not installed.
+ * @brief The differences between Eigen 3.4 and 5.
+ * Internal: not installed.
  */
 #ifndef tautline_EigenCompatibility_h
 #define tautline_EigenCompatibility_h

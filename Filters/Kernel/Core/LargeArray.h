@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file LargeArray.h
- * @brief Arrays that are fully written before they are read. Internal: not installed.
+ * @brief Arrays that are fully written before they are read.
+ * Internal: not installed.
  */
 #ifndef tautline_LargeArray_h
 #define tautline_LargeArray_h

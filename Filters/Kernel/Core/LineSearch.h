@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file LineSearch.h
- * @brief Definitions shared by all line searches of the kernel. Internal: not installed.
+ * @brief Definitions shared by all line searches of the kernel.
+ * Internal: not installed.
  */
 #ifndef tautline_LineSearch_h
 #define tautline_LineSearch_h

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file LoopProgress.h
- * @brief The progress of the loops of a computation, for display. Internal: not installed.
+ * @brief The progress of the loops of a computation, for display.
  *
  * Kernel functions without a callback report their loops here; the loops of Parallel.h do so by
  * themselves. It has an effect only on a thread with a LoopProgress.
@@ -10,6 +10,7 @@
  * const tautline::LoopProgress progress([](double done) { show(done); }, 0.0, 0.5);
  * evaluateMetric(mesh, metric, options, values); // shows growing numbers, at last 0.5
  * @endcode
+ * Internal: not installed.
  */
 #ifndef tautline_LoopProgress_h
 #define tautline_LoopProgress_h

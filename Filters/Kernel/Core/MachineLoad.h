@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MachineLoad.h
- * @brief The load of the machine. Internal: not installed.
+ * @brief The load of the machine.
+ * Internal: not installed.
  */
 #ifndef tautline_MachineLoad_h
 #define tautline_MachineLoad_h

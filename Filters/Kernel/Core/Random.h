@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Random.h
- * @brief Random numbers that are the same on all systems. Internal: not installed.
+ * @brief Random numbers that are the same on all systems.
  *
  * SplitMix64 (Steele, Lea and Flood, 2014): the state is a counter, and the random number is its
  * hash. A generator is made from a seed, a stream and an item (for example a vertex), so that the
  * numbers of one item are independent of all others. Real numbers use the upper 53 bits, and
  * directions use rejection, with only + - * / and the square root: the distributions and
  * mathematical functions of the standard library differ between systems.
+ * Internal: not installed.
  */
 #ifndef tautline_Random_h
 #define tautline_Random_h

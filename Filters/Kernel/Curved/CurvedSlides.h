@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CurvedSlides.h
- * @brief Constraints on the points of curved elements: fixed, free, or sliding. Internal: not
- * installed.
+ * @brief Constraints on the points of curved elements: fixed, free, or sliding.
+ * Internal: not installed.
  */
 #ifndef tautline_CurvedSlides_h
 #define tautline_CurvedSlides_h

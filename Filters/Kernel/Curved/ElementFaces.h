@@ -2,7 +2,8 @@
 /**
  * @file ElementFaces.h
  * @brief The faces (in two dimensions, the edges) of reference elements, with local coordinates s
- * and t. Internal: not installed.
+ * and t.
+ * Internal: not installed.
  */
 #ifndef tautline_ElementFaces_h
 #define tautline_ElementFaces_h

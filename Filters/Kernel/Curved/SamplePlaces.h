@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SamplePlaces.h
- * @brief The sample points of the map of an element. Internal: not installed.
+ * @brief The sample points of the map of an element.
  *
  * They are the points of a quadrature with positive weights: with a negative weight, a sum of
  * barriers has no minimum. Intervals use Gauss-Lobatto rules, whose points include the corners;
  * triangles and tetrahedra use products of Gauss-Jacobi rules (A. H. Stroud, "Approximate
  * calculation of multiple integrals", 1971); tetrahedra up to order 2 use quadratureOf().
+ * Internal: not installed.
  */
 #ifndef tautline_SamplePlaces_h
 #define tautline_SamplePlaces_h

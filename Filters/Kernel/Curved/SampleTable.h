@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SampleTable.h
- * @brief The shape-function gradients of an element at its sample points. Internal: not installed.
+ * @brief The shape-function gradients of an element at its sample points.
+ * Internal: not installed.
  */
 #ifndef tautline_SampleTable_h
 #define tautline_SampleTable_h

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CellPlans.h
- * @brief How each cell type is converted when a mesh is curved. Internal: not installed.
+ * @brief How each cell type is converted when a mesh is curved.
+ * Internal: not installed.
  */
 #ifndef tautline_CellPlans_h
 #define tautline_CellPlans_h

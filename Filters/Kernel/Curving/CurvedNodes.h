@@ -2,7 +2,8 @@
 /**
  * @file CurvedNodes.h
  * @brief The positions of the nodes of a curved cell on its edges and faces, and how inner nodes
- * follow the nodes on edges and faces. Internal: not installed.
+ * follow the nodes on edges and faces.
+ * Internal: not installed.
  */
 #ifndef tautline_CurvedNodes_h
 #define tautline_CurvedNodes_h

@@ -2,7 +2,8 @@
 /**
  * @file Femwarp.h
  * @brief FEMWARP and anisotropic FEMWARP, sections 4.8 and 4.9.1: the harmonic solve, the limit in
- * which a coefficient is 0, and the biharmonic equation. Internal: not installed.
+ * which a coefficient is 0, and the biharmonic equation.
+ * Internal: not installed.
  */
 #ifndef tautline_Femwarp_h
 #define tautline_Femwarp_h

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file WarpBoundary.h
- * @brief Self-intersections of a moved boundary. Internal: not installed.
+ * @brief Self-intersections of a moved boundary.
+ * Internal: not installed.
  */
 #ifndef tautline_WarpBoundary_h
 #define tautline_WarpBoundary_h

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file WarpPath.h
- * @brief The path of the prescribed points if only its end is given. Internal: not installed.
+ * @brief The path of the prescribed points if only its end is given.
+ * Internal: not installed.
  */
 #ifndef tautline_WarpPath_h
 #define tautline_WarpPath_h

@@ -3,11 +3,12 @@
  * @file WarpPointwise.h
  * @brief The deformation methods that are compared with FEMWARP and do not solve a partial
  * differential equation: inverse distance weighting, radial basis functions and weighted Laplacian
- * smoothing. Internal: not installed.
+ * smoothing.
  *
  * All three move the points by the affine motion that fits the prescribed displacements best (least
  * squares) and process only the rest, so that every method is exact for an affine motion. Lengths
  * are relative to the extent of the prescribed points, so that the unit of length does not matter.
+ * Internal: not installed.
  */
 #ifndef tautline_WarpPointwise_h
 #define tautline_WarpPointwise_h

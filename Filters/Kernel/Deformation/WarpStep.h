@@ -2,7 +2,8 @@
 /**
  * @file WarpStep.h
  * @brief One step of a motion: computes all points of a mesh from the displacements of the
- * prescribed points. Internal: not installed.
+ * prescribed points.
+ * Internal: not installed.
  */
 #ifndef tautline_WarpStep_h
 #define tautline_WarpStep_h

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file WarpSteps.h
- * @brief A motion in steps, each starting from the mesh of the previous step. Internal: not
- * installed.
+ * @brief A motion in steps, each starting from the mesh of the previous step.
+ * Internal: not installed.
  */
 #ifndef tautline_WarpSteps_h
 #define tautline_WarpSteps_h

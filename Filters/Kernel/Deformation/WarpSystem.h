@@ -2,7 +2,8 @@
 /**
  * @file WarpSystem.h
  * @brief The partition (4.8) of a matrix into points with given and with unknown values, and
- * solutions of (4.10) for many right-hand sides. Internal: not installed.
+ * solutions of (4.10) for many right-hand sides.
+ * Internal: not installed.
  */
 #ifndef tautline_WarpSystem_h
 #define tautline_WarpSystem_h

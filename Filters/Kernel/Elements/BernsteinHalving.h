@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BernsteinHalving.h
- * @brief Bisects boxes of the domain of Bernstein polynomials and chooses the directions. Internal:
- * not installed.
+ * @brief Bisects boxes of the domain of Bernstein polynomials and chooses the directions.
+ * Internal: not installed.
  */
 #ifndef tautline_BernsteinHalving_h
 #define tautline_BernsteinHalving_h

@@ -2,7 +2,7 @@
 /**
  * @file BernsteinQuotient.h
  * @brief The minimum of the quotient of a polynomial and a root of a product of polynomials, by
- * branch and bound. Internal: not installed.
+ * branch and bound.
  *
  * Let D be the numerator and F_i > 0 the other polynomials, all in one Bernstein space. Over a box,
  * the denominator is at most a linear combination E of the F_i, and D / E is at least the smallest
@@ -12,6 +12,7 @@
  * - for sqrt(F G): (t F + G / t) / 2, where t is chosen from the means of F and G;
  * - for sqrt(F G H): the bound of (S / 3)^(3/2), where S is a sum with weights of product 1. The
  * bounds converge with the square of the size of the boxes.
+ * Internal: not installed.
  */
 #ifndef tautline_BernsteinQuotient_h
 #define tautline_BernsteinQuotient_h

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ElementBasis.h
- * @brief The polynomials of element maps. Internal: not installed.
+ * @brief The polynomials of element maps.
+ * Internal: not installed.
  */
 #ifndef tautline_ElementBasis_h
 #define tautline_ElementBasis_h

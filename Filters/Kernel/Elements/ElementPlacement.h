@@ -2,7 +2,8 @@
 /**
  * @file ElementPlacement.h
  * @brief The local coordinates of an element: relative to its first node, in a plane, as its mirror
- * image. Internal: not installed.
+ * image.
+ * Internal: not installed.
  */
 #ifndef tautline_ElementPlacement_h
 #define tautline_ElementPlacement_h

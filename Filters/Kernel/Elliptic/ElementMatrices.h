@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ElementMatrices.h
- * @brief Element stiffness matrices of the diffusion operator and of linear elasticity. Internal:
- * not installed.
+ * @brief Element stiffness matrices of the diffusion operator and of linear elasticity.
  *
  * All are exactly symmetric: only one of each pair of symmetric entries is computed and then
  * copied.
+ * Internal: not installed.
  */
 #ifndef tautline_ElementMatrices_h
 #define tautline_ElementMatrices_h

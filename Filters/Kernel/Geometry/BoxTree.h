@@ -2,7 +2,8 @@
 /**
  * @file BoxTree.h
  * @brief A bounding-box tree that finds the boxes that meet a box, and the object nearest to a
- * point. Internal: not installed.
+ * point.
+ * Internal: not installed.
  */
 #ifndef tautline_BoxTree_h
 #define tautline_BoxTree_h

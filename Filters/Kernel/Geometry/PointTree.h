@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PointTree.h
- * @brief A binary tree of points by medians along the longest side of their box. Internal: not
- * installed.
+ * @brief A binary tree of points by medians along the longest side of their box.
+ * Internal: not installed.
  */
 #ifndef tautline_PointTree_h
 #define tautline_PointTree_h

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SegmentDistance.h
- * @brief Squared distances between segments in the plane. Internal: not installed.
+ * @brief Squared distances between segments in the plane.
+ * Internal: not installed.
  */
 #ifndef tautline_SegmentDistance_h
 #define tautline_SegmentDistance_h

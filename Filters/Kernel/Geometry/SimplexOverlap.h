@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SimplexOverlap.h
- * @brief The intersection of two planar triangles, or of two tetrahedra, in pieces. Internal: not
- * installed.
+ * @brief The intersection of two planar triangles, or of two tetrahedra, in pieces.
  *
  * A simplex is cut along the facets of another one into simplices. Their corners are given by
  * barycentric coordinates in both, from which integrals of products of linear functions follow.
@@ -10,6 +9,7 @@
  *     const SimplexOverlap<4> overlap(x, y);          // two tetrahedra
  *     double volume = 0;
  *     overlap.forEachPiece([&](const auto&, const auto&, double size) { volume += size; });
+ * Internal: not installed.
  */
 #ifndef tautline_SimplexOverlap_h
 #define tautline_SimplexOverlap_h

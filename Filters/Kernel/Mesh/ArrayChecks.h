@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ArrayChecks.h
- * @brief Searches the raw arrays of a mesh for invalid values. Internal: not installed.
+ * @brief Searches the raw arrays of a mesh for invalid values.
  *
  * Linear and threaded: each array is read once. The result is the first position, for any number of
  * threads, or -1. Ids are not dereferenced, so that arrays with any content are allowed. `Id` is
  * std::int32_t or std::int64_t, `Real` is float or double.
+ * Internal: not installed.
  */
 #ifndef tautline_ArrayChecks_h
 #define tautline_ArrayChecks_h

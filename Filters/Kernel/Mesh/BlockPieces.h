@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BlockPieces.h
- * @brief Finds the blocks, in pieces on several ranks, that share a seam. Internal: not installed.
+ * @brief Finds the blocks, in pieces on several ranks, that share a seam.
+ * Internal: not installed.
  */
 #ifndef tautline_BlockPieces_h
 #define tautline_BlockPieces_h

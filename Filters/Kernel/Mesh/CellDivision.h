@@ -2,7 +2,8 @@
 /**
  * @file CellDivision.h
  * @brief Redistributes cells so that each rank has a part, and transfers values to the parts and
- * back to the pieces. Internal: not installed.
+ * back to the pieces.
+ * Internal: not installed.
  */
 #ifndef tautline_CellDivision_h
 #define tautline_CellDivision_h

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CellOrder.h
- * @brief Finds the cells of a mesh to reverse so that all orders agree. Internal: not installed.
+ * @brief Finds the cells of a mesh to reverse so that all orders agree.
  *
  * Many programs write cells with either point order. These cells are valid; only their order
  * differs from their neighbors. The shared facet of neighbors shows whether their orders agree,
  * even if the mesh is tangled.
+ * Internal: not installed.
  */
 #ifndef tautline_CellOrder_h
 #define tautline_CellOrder_h

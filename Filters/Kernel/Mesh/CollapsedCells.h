@@ -2,11 +2,12 @@
 /**
  * @file CollapsedCells.h
  * @brief Hexahedra, wedges, pyramids and quadrilaterals that list points more than once, converted
- * to the remaining shapes. Internal: not installed.
+ * to the remaining shapes.
  *
  * Files of solvers with one element type write a wedge as a hexahedron with two collapsed edges,
  * and similarly pyramids and tetrahedra. The Jacobian of the hexahedron vanishes there, although
  * the element is valid.
+ * Internal: not installed.
  */
 #ifndef tautline_CollapsedCells_h
 #define tautline_CollapsedCells_h

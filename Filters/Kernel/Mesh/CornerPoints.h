@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CornerPoints.h
- * @brief The points that are corners of cells of a mesh. Internal: not installed.
+ * @brief The points that are corners of cells of a mesh.
+ * Internal: not installed.
  */
 #ifndef tautline_CornerPoints_h
 #define tautline_CornerPoints_h

@@ -2,7 +2,7 @@
 /**
  * @file FollowingNodes.h
  * @brief The nodes of curved cells other than corners, and how they follow the motion of the
- * corners. Internal: not installed.
+ * corners.
  *
  * The position of a node is its position in the straight cell plus an offset, which describes the
  * curvature of the cell. When the corners move, the node moves to its position in the new straight
@@ -10,6 +10,7 @@
  * and a rotating curved cell keeps its shape. If a node belongs to several cells, its position in
  * the straight cell is the same in all of them, because it lies on a shared edge or face; their
  * affine maps are averaged with the cell sizes as weights.
+ * Internal: not installed.
  */
 #ifndef tautline_FollowingNodes_h
 #define tautline_FollowingNodes_h

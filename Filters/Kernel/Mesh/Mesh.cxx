@@ -106,7 +106,7 @@ void checkConnectivity(const MeshView& view, const std::vector<CellBlock>& block
     if (wrong >= 0)
     {
       throw Error(cellMessage(wrong,
-        std::string("is not a proper ") + topology(block.type).name +
+        std::string("is not a valid ") + topology(block.type).name +
           ": it lists too few points or a point id that is not in the mesh. Check the file or the "
           "connectivity array."));
     }

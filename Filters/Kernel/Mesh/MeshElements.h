@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MeshElements.h
- * @brief Determines which cells of a mesh are elements. Internal: not installed.
+ * @brief Determines which cells of a mesh are elements.
+ * Internal: not installed.
  */
 #ifndef tautline_MeshElements_h
 #define tautline_MeshElements_h

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PointCopies.h
- * @brief Copies of a point, with the same global id, whose positions differ by rounding. Internal:
- * not installed.
+ * @brief Copies of a point, with the same global id, whose positions differ by rounding.
+ * Internal: not installed.
  */
 #ifndef tautline_PointCopies_h
 #define tautline_PointCopies_h

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PointKey.h
- * @brief The key that identifies a point in the pieces of a mesh on several ranks. Internal: not
- * installed.
+ * @brief The key that identifies a point in the pieces of a mesh on several ranks.
+ * Internal: not installed.
  */
 #ifndef tautline_PointKey_h
 #define tautline_PointKey_h

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SeamFacets.h
- * @brief The key that identifies a facet on the boundary of a piece on all ranks. Internal: not
- * installed.
+ * @brief The key that identifies a facet on the boundary of a piece on all ranks.
+ * Internal: not installed.
  */
 #ifndef tautline_SeamFacets_h
 #define tautline_SeamFacets_h

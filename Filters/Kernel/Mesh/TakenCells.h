@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TakenCells.h
- * @brief The cells that a rank receives in a mesh on several ranks. Internal: not installed.
+ * @brief The cells that a rank receives in a mesh on several ranks.
+ * Internal: not installed.
  */
 #ifndef tautline_TakenCells_h
 #define tautline_TakenCells_h

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BlockJacobiMultigrid.h
- * @brief Multigrid for a matrix whose rows are distributed over ranks. Internal: not installed.
+ * @brief Multigrid for a matrix whose rows are distributed over ranks.
  *
  * The aggregates and the coarse matrices are independent of the distribution of the rows, up to
  * rounding: all ranks have the graph of all rows while aggregates are found, and all coarse levels,
@@ -12,6 +12,7 @@
  * of a coarse vector over the ranks. The memory of a rank therefore has a part that does not shrink
  * with more ranks: 8 bytes per coupling of two free points, and about an eighth of the whole
  * matrix.
+ * Internal: not installed.
  */
 #ifndef tautline_BlockJacobiMultigrid_h
 #define tautline_BlockJacobiMultigrid_h

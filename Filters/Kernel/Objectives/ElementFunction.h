@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ElementFunction.h
- * @brief The term of an objective for the metric of one element, with its derivative. Internal: not
- * installed.
+ * @brief The term of an objective for the metric of one element, with its derivative.
+ * Internal: not installed.
  */
 #ifndef tautline_ElementFunction_h
 #define tautline_ElementFunction_h

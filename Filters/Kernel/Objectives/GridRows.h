@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file GridRows.h
- * @brief Definitions shared by grid hierarchies: the matrix, and functions of its rows. Internal:
- * not installed.
+ * @brief Definitions shared by grid hierarchies: the matrix, and functions of its rows.
  *
  * diagonal(row, c) is entry c of the diagonal of the diagonal block of a row, which may be on
  * another rank.
+ * Internal: not installed.
  */
 #ifndef tautline_GridRows_h
 #define tautline_GridRows_h

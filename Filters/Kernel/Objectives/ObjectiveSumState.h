@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ObjectiveSumState.h
- * @brief The state of an ObjectiveSum. Internal: not installed.
+ * @brief The state of an ObjectiveSum.
+ * Internal: not installed.
  */
 #ifndef tautline_ObjectiveSumState_h
 #define tautline_ObjectiveSumState_h

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file OrderlessSums.h
- * @brief Sums that are almost always independent of the order of their terms. Internal: not
- * installed.
+ * @brief Sums that are almost always independent of the order of their terms.
+ * Internal: not installed.
  */
 #ifndef tautline_OrderlessSums_h
 #define tautline_OrderlessSums_h

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file FlatParts.h
- * @brief The points of a surface that global methods may move. Internal: not installed.
+ * @brief The points of a surface that global methods may move.
+ * Internal: not installed.
  */
 #ifndef tautline_FlatParts_h
 #define tautline_FlatParts_h

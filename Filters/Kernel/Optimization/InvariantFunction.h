@@ -2,7 +2,8 @@
 /**
  * @file InvariantFunction.h
  * @brief A sum over simplices of a user metric that only depends on |T|^2 and det T, as a function
- * of one free vertex. Internal: not installed.
+ * of one free vertex.
+ * Internal: not installed.
  */
 #ifndef tautline_InvariantFunction_h
 #define tautline_InvariantFunction_h

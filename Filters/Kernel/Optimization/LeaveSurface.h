@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file LeaveSurface.h
- * @brief Improves the worst elements by letting points leave the surface. Internal: not installed.
+ * @brief Improves the worst elements by letting points leave the surface.
+ * Internal: not installed.
  */
 #ifndef tautline_LeaveSurface_h
 #define tautline_LeaveSurface_h

@@ -2,7 +2,8 @@
 /**
  * @file LocalSweep.h
  * @brief Sweeps over the free vertices, which move one after the other given the current positions
- * of the others. Internal: not installed.
+ * of the others.
+ * Internal: not installed.
  */
 #ifndef tautline_LocalSweep_h
 #define tautline_LocalSweep_h

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file OptimizationSteps.h
- * @brief The methods that move the points of an optimization, and its history. Internal: not
- * installed.
+ * @brief The methods that move the points of an optimization, and its history.
+ * Internal: not installed.
  */
 #ifndef tautline_OptimizationSteps_h
 #define tautline_OptimizationSteps_h

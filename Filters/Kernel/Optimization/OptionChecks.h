@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file OptionChecks.h
- * @brief Checks of the options of optimize(). Internal: not installed.
+ * @brief Checks of the options of optimize().
+ * Internal: not installed.
  */
 #ifndef tautline_OptionChecks_h
 #define tautline_OptionChecks_h

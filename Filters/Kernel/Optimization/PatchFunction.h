@@ -2,7 +2,8 @@
 /**
  * @file PatchFunction.h
  * @brief One objective as a function of one free vertex: in closed form if it is an energy f(N, D),
- * otherwise through the evaluator of the metric. Internal: not installed.
+ * otherwise through the evaluator of the metric.
+ * Internal: not installed.
  */
 #ifndef tautline_PatchFunction_h
 #define tautline_PatchFunction_h

@@ -2,7 +2,8 @@
 /**
  * @file QualityGuard.h
  * @brief Guards the quantities that an optimization must not worsen: the number of invalid
- * elements, the worst element, and the objective. Internal: not installed.
+ * elements, the worst element, and the objective.
+ * Internal: not installed.
  */
 #ifndef tautline_QualityGuard_h
 #define tautline_QualityGuard_h

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SurfaceLimit.h
- * @brief Keeps a surface with sliding vertices near its original position. Internal: not installed.
+ * @brief Keeps a surface with sliding vertices near its original position.
+ * Internal: not installed.
  */
 #ifndef tautline_SurfaceLimit_h
 #define tautline_SurfaceLimit_h

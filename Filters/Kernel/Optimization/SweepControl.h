@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SweepControl.h
- * @brief Stopping rules of sweeps and other iterations. Internal: not installed.
+ * @brief Stopping rules of sweeps and other iterations.
+ * Internal: not installed.
  */
 #ifndef tautline_SweepControl_h
 #define tautline_SweepControl_h

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ValidityLevels.h
- * @brief The degree of validity of each element. Internal: not installed.
+ * @brief The degree of validity of each element.
+ * Internal: not installed.
  */
 #ifndef tautline_ValidityLevels_h
 #define tautline_ValidityLevels_h

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file VertexOptimizer.h
- * @brief Moves one free vertex to reduce the scalarized objective with the others fixed. Internal:
- * not installed.
+ * @brief Moves one free vertex to reduce the scalarized objective with the others fixed.
+ * Internal: not installed.
  */
 #ifndef tautline_VertexOptimizer_h
 #define tautline_VertexOptimizer_h

@@ -2,7 +2,8 @@
 /**
  * @file Energies.h
  * @brief Energies f(N, D) of a simplex, N = |T|^2 and D = det T (see SimplexMesh.h): minimized by
- * the fast optimizers. Internal: not installed.
+ * the fast optimizers.
+ * Internal: not installed.
  */
 #ifndef tautline_Energies_h
 #define tautline_Energies_h

@@ -2,11 +2,12 @@
 /**
  * @file SimplexMesh.h
  * @brief A mesh prepared for optimization: the simplices at the corners of its cells, renumbered
- * for the cache, with the patch of simplices around each free vertex. Internal: not installed.
+ * for the cache, with the patch of simplices around each free vertex.
  *
  * With T = A W^-1 of a simplex, N = |T|^2 is the sum of c_kl |x_k - x_l|^2 over its edges, and D =
  * det T a multiple of its volume. As a function of one vertex, N is quadratic (with a multiple of
  * the unit matrix as Hessian) and D is linear. All fast objectives are functions of N and D.
+ * Internal: not installed.
  */
 #ifndef tautline_SimplexMesh_h
 #define tautline_SimplexMesh_h

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PeridynamicsGeometry.h
- * @brief Triangles with bounding boxes, and the search for nearby triangles. Internal: not
- * installed.
+ * @brief Triangles with bounding boxes, and the search for nearby triangles.
+ * Internal: not installed.
  */
 #ifndef tautline_PeridynamicsGeometry_h
 #define tautline_PeridynamicsGeometry_h

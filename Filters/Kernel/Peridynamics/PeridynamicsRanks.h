@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PeridynamicsRanks.h
- * @brief The distribution of the rows of a nonlocal matrix over ranks. Internal: not installed.
+ * @brief The distribution of the rows of a nonlocal matrix over ranks.
+ * Internal: not installed.
  */
 #ifndef tautline_PeridynamicsRanks_h
 #define tautline_PeridynamicsRanks_h

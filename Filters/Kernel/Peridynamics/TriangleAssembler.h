@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TriangleAssembler.h
- * @brief The common part of the two discretizations of the peridynamic integrals. Internal: not
- * installed.
+ * @brief The common part of the two discretizations of the peridynamic integrals.
+ * Internal: not installed.
  */
 #ifndef tautline_TriangleAssembler_h
 #define tautline_TriangleAssembler_h

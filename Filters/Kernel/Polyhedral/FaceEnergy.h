@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file FaceEnergy.h
- * @brief The energy of the faces of a finite-volume mesh, with its gradient. Internal: not
- * installed.
+ * @brief The energy of the faces of a finite-volume mesh, with its gradient.
  *
  * With the area vector S and center f of a face, the centers C and C' of its cells, and d = C' - C:
  *
@@ -19,6 +18,7 @@
  *
  * The gradient is computed by reverse accumulation: from cell centers to faces, and from faces to
  * points; it costs about as much as the value.
+ * Internal: not installed.
  */
 #ifndef tautline_FaceEnergy_h
 #define tautline_FaceEnergy_h

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CombineCorners.h
- * @brief Combines the values of the corners of a cell. Internal: not installed.
+ * @brief Combines the values of the corners of a cell.
+ * Internal: not installed.
  */
 #ifndef tautline_CombineCorners_h
 #define tautline_CombineCorners_h

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file JudgedValues.h
- * @brief The metric values that define the worst element. Internal: not installed.
+ * @brief The metric values that define the worst element.
+ * Internal: not installed.
  */
 #ifndef tautline_JudgedValues_h
 #define tautline_JudgedValues_h

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BoundaryFreedom.h
- * @brief The freedom of the points of the boundary and of interfaces. Internal: not installed.
+ * @brief The freedom of the points of the boundary and of interfaces.
+ * Internal: not installed.
  */
 #ifndef tautline_BoundaryFreedom_h
 #define tautline_BoundaryFreedom_h

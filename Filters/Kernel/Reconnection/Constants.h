@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Constants.h
- * @brief Constants shared by the reconnection of tetrahedra and of triangles. Internal: not
- * installed.
+ * @brief Constants shared by the reconnection of tetrahedra and of triangles.
+ * Internal: not installed.
  */
 #ifndef tautline_ReconnectionConstants_h
 #define tautline_ReconnectionConstants_h

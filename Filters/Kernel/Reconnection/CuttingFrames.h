@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CuttingFrames.h
- * @brief The directions and positions of the planes that cut a mesh into blocks. Internal: not
- * installed.
+ * @brief The directions and positions of the planes that cut a mesh into blocks.
+ * Internal: not installed.
  */
 #ifndef tautline_CuttingFrames_h
 #define tautline_CuttingFrames_h

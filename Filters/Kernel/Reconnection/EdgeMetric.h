@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file EdgeMetric.h
- * @brief The metric of each point, in which target edges have length 1. Internal: not installed.
+ * @brief The metric of each point, in which target edges have length 1.
+ * Internal: not installed.
  */
 #ifndef tautline_EdgeMetric_h
 #define tautline_EdgeMetric_h

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file FacetBound.h
- * @brief The bound given by a fixed facet: the best quality of a tetrahedron on it. Internal: not
- * installed.
+ * @brief The bound given by a fixed facet: the best quality of a tetrahedron on it.
+ * Internal: not installed.
  */
 #ifndef tautline_FacetBound_h
 #define tautline_FacetBound_h

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file InputMetric.h
- * @brief The metric of the input points, interpolated at any position. Internal: not installed.
+ * @brief The metric of the input points, interpolated at any position.
+ * Internal: not installed.
  */
 #ifndef tautline_InputMetric_h
 #define tautline_InputMetric_h

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PassPlan.h
- * @brief The passes of a reconnection run. Internal: not installed.
+ * @brief The passes of a reconnection run.
+ * Internal: not installed.
  */
 #ifndef tautline_PassPlan_h
 #define tautline_PassPlan_h

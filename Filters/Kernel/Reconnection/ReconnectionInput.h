@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ReconnectionInput.h
- * @brief Checks and converts the input of reconnection. Internal: not installed.
+ * @brief Checks and converts the input of reconnection.
+ * Internal: not installed.
  */
 #ifndef tautline_ReconnectionInput_h
 #define tautline_ReconnectionInput_h

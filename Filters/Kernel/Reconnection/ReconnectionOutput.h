@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ReconnectionOutput.h
- * @brief The result of reconnection as arrays, and its relation to the input. Internal: not
- * installed.
+ * @brief The result of reconnection as arrays, and its relation to the input.
+ * Internal: not installed.
  */
 #ifndef tautline_ReconnectionOutput_h
 #define tautline_ReconnectionOutput_h

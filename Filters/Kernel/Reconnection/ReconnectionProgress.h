@@ -2,7 +2,8 @@
 /**
  * @file ReconnectionProgress.h
  * @brief The common part of runs on tetrahedra and triangles: the clock, the observer and the
- * history; the queue of the worst cells; the sweeps for the mean. Internal: not installed.
+ * history; the queue of the worst cells; the sweeps for the mean.
+ * Internal: not installed.
  */
 #ifndef tautline_ReconnectionProgress_h
 #define tautline_ReconnectionProgress_h

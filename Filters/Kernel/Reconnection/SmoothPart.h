@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SmoothPart.h
- * @brief A patch or curve of a surface to which changing triangles stay close. Internal: not
- * installed.
+ * @brief A patch or curve of a surface to which changing triangles stay close.
+ * Internal: not installed.
  */
 #ifndef tautline_SmoothPart_h
 #define tautline_SmoothPart_h

@@ -2,7 +2,8 @@
 /**
  * @file StarSmoothing.h
  * @brief The position of one point that maximizes the smallest quality of the surrounding
- * tetrahedra. Internal: not installed.
+ * tetrahedra.
+ * Internal: not installed.
  */
 #ifndef tautline_StarSmoothing_h
 #define tautline_StarSmoothing_h

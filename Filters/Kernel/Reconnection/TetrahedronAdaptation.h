@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TetrahedronAdaptation.h
- * @brief Adapts the edges of a tetrahedral mesh to their target lengths. Internal: not installed.
+ * @brief Adapts the edges of a tetrahedral mesh to their target lengths.
  *
  * Rounds of splits (the longest edges first), contractions (the shortest first), swaps and motions,
  * see A. Loseille and F. Alauzet, "Optimal 3D highly anisotropic mesh adaptation based on the
  * continuous mesh framework" (IMR 2009), until hardly any edge changes.
+ * Internal: not installed.
  */
 #ifndef tautline_TetrahedronAdaptation_h
 #define tautline_TetrahedronAdaptation_h

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TetrahedronPasses.h
- * @brief The order in which reconnection processes tetrahedra: worst first. Internal: not
- * installed.
+ * @brief The order in which reconnection processes tetrahedra: worst first.
+ * Internal: not installed.
  */
 #ifndef tautline_TetrahedronPasses_h
 #define tautline_TetrahedronPasses_h

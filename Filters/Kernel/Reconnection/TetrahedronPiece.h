@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TetrahedronPiece.h
- * @brief Tetrahedra that move between ranks, with their points. Internal: not installed.
+ * @brief Tetrahedra that move between ranks, with their points.
+ * Internal: not installed.
  */
 #ifndef tautline_TetrahedronPiece_h
 #define tautline_TetrahedronPiece_h

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TetrahedronQuality.h
- * @brief The quality of one tetrahedron that reconnection maximizes. Internal: not installed.
+ * @brief The quality of one tetrahedron that reconnection maximizes.
  *
  * q = min(smallest sine of the six dihedral angles, (mean ratio)^(3/2)), 1 for the regular
  * tetrahedron, at most 0 for one that is degenerate or inverted. With d = 6 V, an edge of length l
@@ -10,6 +10,7 @@
  * alone accepts flat shapes, the mean ratio alone small angles. Weights shift the balance.
  * Alternatively, q is derived from a metric of the registry (MetricQuality) or is the shape in a
  * metric tensor.
+ * Internal: not installed.
  */
 #ifndef tautline_TetrahedronQuality_h
 #define tautline_TetrahedronQuality_h

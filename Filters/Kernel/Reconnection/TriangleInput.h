@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TriangleInput.h
- * @brief Checks and converts the input of the reconnection of triangles. Internal: not installed.
+ * @brief Checks and converts the input of the reconnection of triangles.
+ * Internal: not installed.
  */
 #ifndef tautline_TriangleInput_h
 #define tautline_TriangleInput_h

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TriangleMetrics.h
- * @brief The metric field of the input, at any position. Internal: not installed.
+ * @brief The metric field of the input, at any position.
+ * Internal: not installed.
  */
 #ifndef tautline_TriangleMetrics_h
 #define tautline_TriangleMetrics_h

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TriangleQuality.h
- * @brief The quality of one triangle that reconnection maximizes. Internal: not installed.
+ * @brief The quality of one triangle that reconnection maximizes.
  *
  * q is the sine of the smallest angle: with D twice the area and edges of lengths u >= v >= w, q =
  * D / (u v). It is sqrt(3) / 2 for the regular triangle, 0 for a degenerate one, and negative for
@@ -9,6 +9,7 @@
  * / sqrt(3), so that it need not be part of the quality.
  *
  * In metrics, it is the mean ratio of the triangle in the mean of the metrics of its corners.
+ * Internal: not installed.
  */
 #ifndef tautline_TriangleQuality_h
 #define tautline_TriangleQuality_h

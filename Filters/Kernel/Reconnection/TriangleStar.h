@@ -2,7 +2,8 @@
 /**
  * @file TriangleStar.h
  * @brief The position of one point that maximizes the smallest quality of the surrounding
- * triangles. Internal: not installed.
+ * triangles.
+ * Internal: not installed.
  */
 #ifndef tautline_TriangleStar_h
 #define tautline_TriangleStar_h

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TriangleSurface.h
- * @brief The input surface, on which a changing triangle mesh stays. Internal: not installed.
+ * @brief The input surface, on which a changing triangle mesh stays.
+ * Internal: not installed.
  */
 #ifndef tautline_TriangleSurface_h
 #define tautline_TriangleSurface_h

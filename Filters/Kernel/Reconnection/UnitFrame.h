@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file UnitFrame.h
- * @brief Plane coordinates in which a metric is the identity. Internal: not installed.
+ * @brief Plane coordinates in which a metric is the identity.
+ * Internal: not installed.
  */
 #ifndef tautline_UnitFrame_h
 #define tautline_UnitFrame_h

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PlaneDistance.h
- * @brief The distance between two points of an image. Internal: not installed.
+ * @brief The distance between two points of an image.
+ * Internal: not installed.
  */
 #ifndef tautline_PlaneDistance_h
 #define tautline_PlaneDistance_h

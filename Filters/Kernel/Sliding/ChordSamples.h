@@ -2,7 +2,8 @@
 /**
  * @file ChordSamples.h
  * @brief The distances between the facets of a mesh and the surface on which its points slide, in
- * both directions. Internal: not installed.
+ * both directions.
+ * Internal: not installed.
  */
 #ifndef tautline_ChordSamples_h
 #define tautline_ChordSamples_h

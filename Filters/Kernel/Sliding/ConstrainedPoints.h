@@ -2,7 +2,8 @@
 /**
  * @file ConstrainedPoints.h
  * @brief The constraints of the points of a mesh: fixed, sliding, within a distance of a surface,
- * or free. Internal: not installed.
+ * or free.
+ * Internal: not installed.
  */
 #ifndef tautline_ConstrainedPoints_h
 #define tautline_ConstrainedPoints_h

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PlacePoints.h
- * @brief Moves points that were free in a band back onto their surfaces or curves. Internal: not
- * installed.
+ * @brief Moves points that were free in a band back onto their surfaces or curves.
+ * Internal: not installed.
  */
 #ifndef tautline_PlacePoints_h
 #define tautline_PlacePoints_h

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file QuadraticModel.h
- * @brief A convex quadratic model of an energy of points, minimized matrix-free. Internal: not
- * installed.
+ * @brief A convex quadratic model of an energy of points, minimized matrix-free.
+ * Internal: not installed.
  */
 #ifndef tautline_QuadraticModel_h
 #define tautline_QuadraticModel_h

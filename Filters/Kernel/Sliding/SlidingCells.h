@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SlidingCells.h
- * @brief The cells of a mesh with movable points, and the cells around each point. Internal: not
- * installed.
+ * @brief The cells of a mesh with movable points, and the cells around each point.
+ * Internal: not installed.
  */
 #ifndef tautline_SlidingCells_h
 #define tautline_SlidingCells_h

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ExtremeEigenvalues.h
- * @brief The smallest and the largest eigenvalue of A, or of P^-1 A, for a PETSc matrix. Internal:
- * not installed.
+ * @brief The smallest and the largest eigenvalue of A, or of P^-1 A, for a PETSc matrix.
+ * Internal: not installed.
  */
 #ifndef tautline_ExtremeEigenvalues_h
 #define tautline_ExtremeEigenvalues_h

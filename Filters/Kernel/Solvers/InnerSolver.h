@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file InnerSolver.h
- * @brief A multigrid cycle or a factorization from PETSc inside a method of Tautline. Internal: not
- * installed.
+ * @brief A multigrid cycle or a factorization from PETSc inside a method of Tautline.
+ * Internal: not installed.
  */
 #ifndef tautline_InnerSolver_h
 #define tautline_InnerSolver_h

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PetscCompatibility.h
- * @brief The differences between PETSc 3.18 and 3.25, in one place. Internal: not installed.
+ * @brief The differences between PETSc 3.18 and 3.25, in one place.
+ * Internal: not installed.
  */
 #ifndef tautline_PetscCompatibility_h
 #define tautline_PetscCompatibility_h

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PetscOptionRules.h
- * @brief The PETSc options that a user may specify as text. Internal: not installed.
+ * @brief The PETSc options that a user may specify as text.
  *
  * The text is parsed here, before it is passed to PETSc. Options that choose and tune Krylov
  * methods, preconditioners, and eigensolvers are permitted if they are in a table, for the solver
@@ -11,6 +11,7 @@
  * the process, attach a debugger, or affect PETSc as a whole. Values are checked against a type, a
  * range or a list, so that no value can be a file name. -pc_type fieldsplit splits by component
  * only (-fieldsplit_0_... is the solver of the first): other splits need index sets.
+ * Internal: not installed.
  */
 #ifndef tautline_PetscOptionRules_h
 #define tautline_PetscOptionRules_h

@@ -2,8 +2,8 @@
 /**
  * @file PetscSession.h
  * @brief PETSc inside a process that may also use it: initialized at first use, used by one thread
- * at a time, with separate options and error handler that do not affect other users. Internal: not
- * installed.
+ * at a time, with separate options and error handler that do not affect other users.
+ * Internal: not installed.
  */
 #ifndef tautline_PetscSession_h
 #define tautline_PetscSession_h

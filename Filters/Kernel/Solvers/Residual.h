@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Residual.h
- * @brief The residual of a vector in a linear system. Internal: not installed.
+ * @brief The residual of a vector in a linear system.
+ * Internal: not installed.
  */
 #ifndef tautline_Residual_h
 #define tautline_Residual_h

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SmallEigenvalues.h
- * @brief Eigenvalues of small matrices such as element matrices. Internal: not installed.
+ * @brief Eigenvalues of small matrices such as element matrices.
+ * Internal: not installed.
  */
 #ifndef tautline_SmallEigenvalues_h
 #define tautline_SmallEigenvalues_h

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Tridiagonal.h
- * @brief Extreme eigenvalues of symmetric tridiagonal matrices, for Lanczos methods. Internal: not
- * installed.
+ * @brief Extreme eigenvalues of symmetric tridiagonal matrices, for Lanczos methods.
+ * Internal: not installed.
  */
 #ifndef tautline_Tridiagonal_h
 #define tautline_Tridiagonal_h

@@ -2,7 +2,7 @@
 /**
  * @file Watchdog.h
  * @brief Work that cannot be interrupted, under a time limit: it runs in a separate thread while
- * the caller waits for it, and the caller may stop waiting. Internal: not installed.
+ * the caller waits for it, and the caller may stop waiting.
  *
  * There is one such thread, started at first use; work is done in the order of the calls. Abandoned
  * work continues in the background until it ends by itself; work submitted later waits for it,
@@ -10,6 +10,7 @@
  * handlers and destructors of exit() are skipped because the work may use the objects they destroy.
  *
  * Cost: two thread switches per call of runWatched() and of WatchedWork::inCaller().
+ * Internal: not installed.
  */
 #ifndef tautline_Watchdog_h
 #define tautline_Watchdog_h

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file HarmonicMap.h
- * @brief The harmonic map of a mesh: every free vertex at the mean of its neighbors. Internal: not
- * installed.
+ * @brief The harmonic map of a mesh: every free vertex at the mean of its neighbors.
+ * Internal: not installed.
  */
 #ifndef tautline_HarmonicMap_h
 #define tautline_HarmonicMap_h

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file InfeasibleSimplices.h
- * @brief The simplices that no position of their single free vertex makes valid. Internal: not
- * installed.
+ * @brief The simplices that no position of their single free vertex makes valid.
+ * Internal: not installed.
  */
 #ifndef tautline_InfeasibleSimplices_h
 #define tautline_InfeasibleSimplices_h

@@ -3,7 +3,8 @@
  * @file LinearProgram.h
  * @brief Linear programs in a few variables (R. Seidel, "Small-dimensional linear programming and
  * convex hulls made easy", Discrete Comput. Geom. 6, 1991), and the Chebyshev center of
- * half-spaces. Internal: not installed.
+ * half-spaces.
+ * Internal: not installed.
  */
 #ifndef tautline_LinearProgram_h
 #define tautline_LinearProgram_h

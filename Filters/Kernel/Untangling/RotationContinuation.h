@@ -2,7 +2,8 @@
 /**
  * @file RotationContinuation.h
  * @brief An initial mesh for untangling around rotated holes: there, minimizing the energy leads to
- * a fold, whereas the elements should wind around the hole. Internal: not installed.
+ * a fold, whereas the elements should wind around the hole.
+ * Internal: not installed.
  */
 #ifndef tautline_RotationContinuation_h
 #define tautline_RotationContinuation_h

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SurfaceRegions.h
- * @brief Untangles the invalid elements of a surface in space. Internal: not installed.
+ * @brief Untangles the invalid elements of a surface in space.
  *
  * An element of a surface has no intrinsic sign: the sign of a corner is determined relative to the
  * normal of the neighborhood. The rings of elements around the invalid ones are projected onto the
  * local tangent plane, untangled in it with the surrounding points held, and moved back onto the
  * surface.
+ * Internal: not installed.
  */
 #ifndef tautline_SurfaceRegions_h
 #define tautline_SurfaceRegions_h

@@ -2,7 +2,8 @@
 /**
  * @file TangledMesh.h
  * @brief A SimplexMesh with its invalid simplices, and the moves of single vertices that make more
- * simplices valid. Internal: not installed.
+ * simplices valid.
+ * Internal: not installed.
  */
 #ifndef tautline_TangledMesh_h
 #define tautline_TangledMesh_h

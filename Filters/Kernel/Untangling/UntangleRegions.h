@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file UntangleRegions.h
- * @brief Untangles a mesh on several ranks in the regions around its invalid elements. Internal:
- * not installed.
+ * @brief Untangles a mesh on several ranks in the regions around its invalid elements.
+ * Internal: not installed.
  */
 #ifndef tautline_UntangleRegions_h
 #define tautline_UntangleRegions_h

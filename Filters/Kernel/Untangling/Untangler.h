@@ -2,7 +2,8 @@
 /**
  * @file Untangler.h
  * @brief The phases of untangling: sweeps around the inverted simplices; moves of all vertices at
- * once; continuation for rotated holes. Internal: not installed.
+ * once; continuation for rotated holes.
+ * Internal: not installed.
  */
 #ifndef tautline_Untangler_h
 #define tautline_Untangler_h

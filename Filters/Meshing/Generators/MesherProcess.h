@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MesherProcess.h
- * @brief A process of the program tautline-mesher. Internal: not installed.
+ * @brief A process of the program tautline-mesher.
+ * Internal: not installed.
  */
 #ifndef tautline_MesherProcess_h
 #define tautline_MesherProcess_h

@@ -122,9 +122,9 @@ TAUTLINE_PART(testCells)
   wrong("Cell 2 lists point 27, but the mesh has 27 points (0 to 26)",
     [](auto*, auto* ids) { ids->SetValue(9, 27); });
   wrong("Cell 39 lists point -1,", [](auto*, auto* ids) { ids->SetValue(159, -1); });
-  wrong("Cell 3 is not a proper vtkTetra: it lists 5 points",
+  wrong("Cell 3 is not a valid vtkTetra: it lists 5 points",
     [](auto* offsets, auto*) { offsets->SetValue(4, 17); });
-  wrong("Cell 1 has no proper place in the connectivity: its offsets descend from 4 to 3",
+  wrong("Cell 1 has an invalid range in the connectivity: its offsets descend from 4 to 3",
     [](auto* offsets, auto*) { offsets->SetValue(2, 3); });
   wrong("Cell 0 begins at position 1 of the connectivity, not at 0",
     [](auto* offsets, auto*) { offsets->SetValue(0, 1); });

@@ -222,7 +222,7 @@ TAUTLINE_PART(testErrors)
   filter->SetInputData(toGrid(blockMesh(CellType::Quadrilateral, 3, 3, 0)));
   check(filter, "9 cells that are not triangles (quadrilateral): run Tetrahedralize first");
   filter->SetInputData(toGrid(blockMesh(CellType::Tetrahedron, 2, 2, 2)));
-  check(filter, "no triangles (tetrahedron)");
+  check(filter, "that are not triangles (tetrahedron)");
   filter->SetInputData(toGrid(quadraticOf(blockMesh(CellType::Triangle, 2, 2, 0))));
   check(filter, "8 curved cells");
   MeshData curved = blockMesh(CellType::Triangle, 4, 4, 0);

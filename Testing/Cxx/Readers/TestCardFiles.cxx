@@ -436,7 +436,7 @@ void testNastranErrors()
                             "GRID,4,,.5,.0,.0\n";
   TAUTLINE_CHECK(fails(readNastran, grids + "CTRIA3,1,1,1,2\n", 5, "CTRIA3"));
   TAUTLINE_CHECK(fails(readNastran, grids + "CTRIA3,1,1,1,2,9\n", 5, "node 9"));
-  TAUTLINE_CHECK(fails(readNastran, grids + "CTRIA6,1,1,1,2,3,4\n", 5, "1 of its 3 middle"));
+  TAUTLINE_CHECK(fails(readNastran, grids + "CTRIA6,1,1,1,2,3,4\n", 5, "1 of its 3 midside"));
   TAUTLINE_CHECK(fails(readNastran, grids + "CTRIA3,1,1,1,2,3\nCTRIA3,1,1,1,2,3\n", 6, "twice"));
   TAUTLINE_CHECK(fails(readNastran, grids + "GRID,4,,0.,1.,1.\n", 5, "node 4"));
   TAUTLINE_CHECK(fails(readNastran, grids + "GRID,5,,0.,x,1.\n", 5, "'x'"));
