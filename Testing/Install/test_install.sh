@@ -81,7 +81,7 @@ PYTHON
     mv "$program" "$work/program"
     without="$(tet_mesh 2>&1 || true)"
     mv "$work/program" "$program"
-    if [[ $without != *"none at $program; install the Debian package tautline-meshers"* ]]; then echo "$without" >&2; exit 1; fi
+    if [[ $without != *"$program; install the Debian package tautline-meshers"* ]]; then echo "$without" >&2; exit 1; fi
   fi
 
   echo "--- the studies are part of the documents, not of the package"
