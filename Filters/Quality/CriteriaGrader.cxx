@@ -19,7 +19,28 @@ namespace tautline
 {
 namespace
 {
-/// The JSON text itself, or the contents of the file or preset that the text names.
+/// A suggestion if the criteria have no limits for any of the elements: "" or ", which are for
+/// shells; for solids there are fem, ...".
+std::string otherPresets(const QualityCriteria& criteria)
+{
+  const std::string graded = gradedCells(criteria);
+  const std::string other = graded == "shells" ? "solids" : "shells";
+  std::string names;
+  for (const std::string& name : criteriaPresets())
+  {
+    const std::string of = gradedCells(parseCriteria(presetCriteria(name)));
+    if (of.find(other) != std::string::npos)
+    {
+      names += (names.empty() ? "" : ", ") + name;
+    }
+  }
+  return graded.find(other) != std::string::npos
+    ? ""
+    : ", which are for " + graded + "; for " + other + " there are " + names;
+}
+}
+
+//------------------------------------------------------------------------------
 std::string criteriaText(const std::string& text)
 {
   const std::size_t first = text.find_first_not_of(" \t\r\n");
@@ -52,27 +73,6 @@ std::string criteriaText(const std::string& text)
   std::ostringstream content;
   content << file.rdbuf();
   return content.str();
-}
-
-/// A suggestion if the criteria have no limits for any of the elements: "" or ", which are for
-/// shells; for solids there are fem, ...".
-std::string otherPresets(const QualityCriteria& criteria)
-{
-  const std::string graded = gradedCells(criteria);
-  const std::string other = graded == "shells" ? "solids" : "shells";
-  std::string names;
-  for (const std::string& name : criteriaPresets())
-  {
-    const std::string of = gradedCells(parseCriteria(presetCriteria(name)));
-    if (of.find(other) != std::string::npos)
-    {
-      names += (names.empty() ? "" : ", ") + name;
-    }
-  }
-  return graded.find(other) != std::string::npos
-    ? ""
-    : ", which are for " + graded + "; for " + other + " there are " + names;
-}
 }
 
 //------------------------------------------------------------------------------

@@ -17,6 +17,9 @@ class vtkTable;
 
 namespace tautline
 {
+/// JSON as it is, or the content of the preset or file that the text names; throws Error.
+std::string criteriaText(const std::string& text);
+
 class CriteriaGrader
 {
 public:

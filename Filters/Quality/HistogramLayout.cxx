@@ -2,14 +2,12 @@
 #include "HistogramLayout.h"
 
 #include "ColorMaps.h"
+#include "CriteriaGrader.h"
 #include "tautline/Quality/Criteria.h"
 #include "tautline/Quality/Metrics.h"
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <set>
 #include <sstream>
@@ -242,25 +240,6 @@ std::string typeName(std::size_t gradedType)
                                         : "polyhedron";
 }
 
-/// The JSON that a text is or names; throws Error.
-std::string criteriaJson(const std::string& text)
-{
-  const std::size_t first = text.find_first_not_of(" \t\r\n");
-  std::error_code ignored;
-  if (first != std::string::npos && text[first] == '{')
-  {
-    return text;
-  }
-  const auto& presets = criteriaPresets();
-  const bool preset = std::find(presets.begin(), presets.end(), text) != presets.end();
-  if (!preset && std::filesystem::is_regular_file(text, ignored))
-  {
-    std::ifstream file(text);
-    return { std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>() };
-  }
-  return presetCriteria(text);
-}
-
 int dimensionOfType(std::size_t gradedType)
 {
   return gradedType < NumberOfCellTypes ? topologies()[gradedType].dimension
@@ -345,7 +324,7 @@ std::vector<HistogramLimit> histogramLimits(
   QualityCriteria parsed;
   try
   {
-    parsed = parseCriteria(criteriaJson(criteria));
+    parsed = parseCriteria(criteriaText(criteria));
   }
   catch (const Error&)
   {

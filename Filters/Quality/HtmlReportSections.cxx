@@ -3,17 +3,21 @@
 #include "Blocks.h"
 #include "HtmlReportHistogram.h"
 #include "HtmlReportText.h"
+#include "MeshAdapter.h"
+#include "tautline/Quality/Compare.h"
 #include "tautline/Quality/Metrics.h"
 #include "vtkElementQuality.h"
 #include "vtkHtmlReport.h"
 #include "vtkMeshComparison.h"
 
 #include "vtkBoundingBox.h"
-#include "vtkCallbackCommand.h"
-#include "vtkCommand.h"
+#include "vtkCellData.h"
 #include "vtkDataSet.h"
-#include "vtkExecutive.h"
+#include "vtkDoubleArray.h"
+#include "vtkIdTypeArray.h"
 #include "vtkNew.h"
+#include "vtkSignedCharArray.h"
+#include "vtkStringArray.h"
 #include "vtkTable.h"
 #include "vtkVariant.h"
 
@@ -90,25 +94,85 @@ vtkIdType fullest(const MetricHistogram& histogram)
   return most;
 }
 
-void ignoreErrors(vtkObject* object)
+/// The changes of metrics from the cell arrays of two measured meshes, added up over the blocks.
+struct MeasuredChanges
 {
-  vtkNew<vtkCallbackCommand> ignored;
-  ignored->SetCallback([](vtkObject*, unsigned long, void*, void*) {});
-  object->AddObserver(vtkCommand::ErrorEvent, ignored);
+  std::vector<const MetricInfo*> metrics;
+  std::vector<MetricChange> changes;
+  double largestDisplacement = 0;
+};
+
+std::vector<vtkDataSet*> leavesOf(vtkDataObject* mesh)
+{
+  std::vector<vtkDataSet*> leaves;
+  forEachLeaf(mesh, [&leaves](unsigned int, vtkDataSet* data) { leaves.push_back(data); });
+  return leaves;
 }
 
-/// The columns of the table of vtkMeshComparison that the statistics do not have.
-vtkSmartPointer<vtkTable> changesIn(vtkTable* comparison)
+/// Adds the changes of a block; false if the cells differ.
+bool addChanges(vtkDataSet* before, vtkDataSet* after, MeasuredChanges& total)
 {
-  auto changes = vtkSmartPointer<vtkTable>::New();
-  for (const char* column : { MetricColumn, "Better", "Worse", "Equal", "LargestDisplacement" })
+  const MeshAdapter was(before), is(after);
+  if (!connectivityDifference(was.mesh(), is.mesh()).empty())
   {
-    if (vtkAbstractArray* values = comparison->GetColumnByName(column))
-    {
-      changes->AddColumn(values);
-    }
+    return false;
   }
-  return changes;
+  for (vtkIdType point = 0; point < before->GetNumberOfPoints(); ++point)
+  {
+    const double length =
+      norm(pointOf(is.mesh().view(), point) - pointOf(was.mesh().view(), point));
+    total.largestDisplacement = std::max(total.largestDisplacement, length);
+  }
+  const Index cells = after->GetNumberOfCells();
+  const auto valuesOf = [&](vtkDataSet* mesh, const char* metric) -> CellValues
+  {
+    auto* values = vtkDoubleArray::SafeDownCast(mesh->GetCellData()->GetArray(metric));
+    auto* validity = vtkSignedCharArray::SafeDownCast(mesh->GetCellData()->GetArray("Validity"));
+    if (!values || !validity)
+    {
+      throw Error(std::string("a mesh has no measured values of ") + metric);
+    }
+    return { cells, values->GetPointer(0), validity->GetPointer(0), is.mesh().view().cellTypes,
+      is.ghostCells() };
+  };
+  const vtkNew<vtkMeshComparison> comparison; // for its tolerance
+  const int dimension = is.mesh().dimension() == Dimension::Volume ? 3 : 2;
+  std::vector<signed char> change(cells);
+  for (std::size_t m = 0; m < total.metrics.size(); ++m)
+  {
+    const MetricInfo& info = *total.metrics[m];
+    compareMetric(info, dimension, valuesOf(before, info.name), valuesOf(after, info.name),
+      comparison->GetTolerance(), change.data(), total.changes[m]);
+  }
+  return true;
+}
+
+/// A row for each metric.
+vtkSmartPointer<vtkTable> tableOf(const MeasuredChanges& total)
+{
+  auto table = vtkSmartPointer<vtkTable>::New();
+  vtkNew<vtkStringArray> names;
+  names->SetName(MetricColumn);
+  table->AddColumn(names);
+  const auto column = [&table](const char* name, auto array)
+  {
+    array->SetName(name);
+    table->AddColumn(array);
+    return array;
+  };
+  const auto better = column("Better", vtkSmartPointer<vtkIdTypeArray>::New());
+  const auto worse = column("Worse", vtkSmartPointer<vtkIdTypeArray>::New());
+  const auto equal = column("Equal", vtkSmartPointer<vtkIdTypeArray>::New());
+  const auto displacement = column("LargestDisplacement", vtkSmartPointer<vtkDoubleArray>::New());
+  for (std::size_t m = 0; m < total.metrics.size(); ++m)
+  {
+    names->InsertNextValue(total.metrics[m]->name);
+    better->InsertNextValue(total.changes[m].better);
+    worse->InsertNextValue(total.changes[m].worse);
+    equal->InsertNextValue(total.changes[m].equal);
+    displacement->InsertNextValue(total.largestDisplacement);
+  }
+  return table;
 }
 }
 
@@ -338,37 +402,39 @@ bool vtkHtmlReport::AddQualityPictures()
 //------------------------------------------------------------------------------
 void vtkHtmlReport::AddChanges()
 {
-  vtkNew<vtkMeshComparison> comparison;
-  ignoreErrors(comparison);
-  ignoreErrors(comparison->GetExecutive());
+  // The arrays have the targets and settings with which the meshes were measured.
+  MeasuredChanges total;
   vtkTable* statistics = this->Table(AFTER, "Statistics");
-  bool any = false;
   for (vtkIdType row = 0; row < statistics->GetNumberOfRows(); ++row)
   {
-    const std::string metric = statistics->GetValueByName(row, MetricColumn).ToString();
-    const MetricInfo* info = findMetric(metric);
-    if (info && info->family != MetricFamily::Faces)
+    if (const MetricInfo* info =
+          findMetric(statistics->GetValueByName(row, MetricColumn).ToString()))
     {
-      comparison->AddMetricByName(metric.c_str());
-      any = true;
+      total.metrics.push_back(info);
     }
   }
-  if (!any)
+  total.changes.resize(total.metrics.size());
+  const std::vector<vtkDataSet*> before = leavesOf(this->Output(BEFORE, "Mesh"));
+  const std::vector<vtkDataSet*> after = leavesOf(this->Output(AFTER, "Mesh"));
+  try
   {
-    return;
-  }
-  comparison->SetInputDataObject(0, this->Output(BEFORE, "Mesh"));
-  comparison->SetInputDataObject(1, this->Output(AFTER, "Mesh"));
-  comparison->Update();
-  vtkTable* table = vtkTable::SafeDownCast(comparison->GetOutputDataObject(1));
-  if (table && table->GetNumberOfRows() > 0)
-  {
-    this->AddTable(changesIn(table));
-  }
-  else
-  {
-    // The connectivity was changed.
+    bool same = before.size() == after.size();
+    for (std::size_t i = 0; i < before.size() && same; ++i)
+    {
+      same = addChanges(before[i], after[i], total);
+    }
+    if (same)
+    {
+      this->AddTable(tableOf(total));
+      return;
+    }
     this->AddText("The meshes have different cells: there is no comparison element by element.");
+  }
+  catch (const Error& error)
+  {
+    const std::string text =
+      std::string("There is no comparison element by element: ") + error.what();
+    this->AddText(text.c_str());
   }
 }
 

@@ -160,7 +160,7 @@ def node_outside():
 def cells_of(mesh):
     """Name of the type and points of each cell, in the order of the mesh."""
     found = [(name, list(cell)) for name, cells in mesh.cells.items() for cell in cells]
-    assert len(mesh.cells) == 1, "the order of several types is not that of the mesh"
+    assert len(mesh.cells) == 1, "the order of cells of several types differs from the mesh"
     return found
 
 

@@ -20,7 +20,7 @@ PROXIES = HERE.parents[1] / "ServerManager"
 DOMAIN = PROXIES / "Snippets/MetricDomain.xml"
 MOST_BYTES = 6000  # of a picture
 
-# The window of the pictures, and their colors: those of the plugin's color maps.
+# The window of the pictures, and the colors of the plugin's color maps.
 X, Y, PIXELS = (-1.0, 2.0), (-0.5, 1.75), 60  # pixels per unit length
 RAMP = [(0.84, 0.90, 0.93), (0.99, 0.90, 0.55), (0.96, 0.55, 0.20), (0.72, 0.06, 0.11)]
 INVERTED, BASE, IDEAL = (0.05, 0.35, 1.0), (0.0, 0.0, 0.0), (0.0, 0.45, 0.2)

@@ -3,12 +3,12 @@
 
 #include "FetchOutput.h"
 #include "ParaViewCompatibility.h"
+#include "ReportPipeline.h"
 
 #include "pqActiveObjects.h"
 #include "pqApplicationCore.h"
 #include "pqObjectBuilder.h"
 #include "pqOutputPort.h"
-#include "pqPipelineFilter.h"
 #include "pqProxy.h"
 #include "pqRenderView.h"
 #include "pqServer.h"
@@ -105,13 +105,6 @@ std::vector<Comparison>& comparisons()
 {
   static std::vector<Comparison> all;
   return all;
-}
-
-pqOutputPort* inputOf(pqPipelineSource* source)
-{
-  auto* filter = qobject_cast<pqPipelineFilter*>(source);
-  const QList<pqOutputPort*> ports = filter ? filter->getInputs("Input") : QList<pqOutputPort*>();
-  return ports.size() == 1 ? ports.front() : nullptr;
 }
 
 /// An executed Element Quality of an output.

@@ -132,7 +132,7 @@ def numbers(data, redistribution: int = 0) -> dict:
         "eigenvalues": field(estimate.GetOutputDataObject(0), "LargestEigenvalue", of_cells=True),
         "excess": field(estimate.GetOutputDataObject(0), "Excess", of_cells=True),
         "study": column,
-        "divided": [filter_.GetSummary().count(wording("divided-anew")) for filter_ in (solve, estimate, study)],
+        "divided": [filter_.GetSummary().count(wording("redistributed")) for filter_ in (solve, estimate, study)],
     }
 
 

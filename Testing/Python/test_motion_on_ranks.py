@@ -69,7 +69,7 @@ for ranks in (1, 2, 3, 4):
         for cut in (0, 1):
             case = found[f"{name} {cut}"]
             by = DIVISIONS.get(name, ".")
-            divided = f"The mesh was {wording('divided-anew')} among {ranks} processes{by}" in case["summary"]
+            divided = f"The mesh was {wording('redistributed')} among {ranks} processes{by}" in case["summary"]
             assert divided == (name in DIVISIONS and ranks > 1), (ranks, name, cut, case["summary"])
             far = np.abs(np.array(case["points"]) - np.array(expected["points"])).max()
             assert far <= CLOSE, (ranks, name, cut, far)

@@ -50,7 +50,7 @@ for ranks in (1, 2, 4):
     for key in ("elastic", "held", "image"):
         assert close(found[key], one[key]), (ranks, key)
     assert close(found["divided"], one["poisson 0 0"]), ranks
-    sentence = f"The mesh was {wording('divided-anew')} among {ranks} processes by PT-Scotch."
+    sentence = f"The mesh was {wording('redistributed')} among {ranks} processes by PT-Scotch."
     assert (found["division"] == sentence) == (ranks > 1), (ranks, found["division"])
     assert close(found["condition"], one["condition"], 1e-4), found["condition"]
     assert abs(found["shares"] - 1) < 1e-6, found["shares"]

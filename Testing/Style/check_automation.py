@@ -81,7 +81,7 @@ def github(tree: Tree):
     if sorted(releases) != supported(tree):
         yield f"ci.yml calls .ci/run on {releases}, the supported releases are {supported(tree)}"
     if any(job["container"]["image"] != "debian:${{ matrix.release }}" for job in jobs):
-        yield "ci.yml calls .ci/run in another container than that of the release"
+        yield "ci.yml does not call .ci/run in the container of the release"
     steps = [step for job in tree.yaml(".github/workflows/docs.yml")["jobs"].values() for step in job["steps"]]
     paths = [step["with"]["path"] for step in steps if "/upload-pages-artifact@" in step.get("uses", "")]
     if not any(step.get("run") == "./run docs" for step in steps) or paths != ["build/site"]:

@@ -15,7 +15,7 @@ namespace
 {
 std::string divided(int size, int how)
 {
-  return std::string("\nThe mesh was ") + wording("divided-anew") + " among " +
+  return std::string("\nThe mesh was ") + wording("redistributed") + " among " +
     std::to_string(size) + " processes" +
     (how == vtkMeshMotionAlgorithm::PT_SCOTCH ? " by PT-Scotch." : ".");
 }

@@ -66,7 +66,7 @@ void testRanks(int rank, int ranks)
   TAUTLINE_CHECK(messages.empty());
   TAUTLINE_CHECK_EQUAL(meshOf(filter)->GetNumberOfCells(), rank == 0 ? data.numberOfCells() : 0);
   TAUTLINE_CHECK(contains(filter->GetSummary(), wording("elements-are-valid")));
-  TAUTLINE_CHECK(!contains(filter->GetSummary(), wording("divided-anew")));
+  TAUTLINE_CHECK(!contains(filter->GetSummary(), wording("redistributed")));
 
   // The same, divided among all.
   for (const int how : { vtkMeshWarp::KD_TREE, vtkMeshWarp::PT_SCOTCH })
@@ -79,7 +79,7 @@ void testRanks(int rank, int ranks)
       TAUTLINE_CHECK_NEAR(distance(withPointsOf(data, meshOf(filter)), expected), 0, 1e-10);
     }
     TAUTLINE_CHECK(contains(filter->GetSummary(),
-      std::string(wording("divided-anew")) + " among " + std::to_string(ranks)));
+      std::string(wording("redistributed")) + " among " + std::to_string(ranks)));
   }
   filter->RedistributeOff();
 

@@ -25,7 +25,7 @@ std::string sentence(int how)
 {
   return how == vtkEllipticAlgorithm::NO_REDISTRIBUTION ? "Seconds"
                                                         : std::string("The mesh was ") +
-      wording("divided-anew") + " among " + std::to_string(processes->GetNumberOfProcesses()) +
+      wording("redistributed") + " among " + std::to_string(processes->GetNumberOfProcesses()) +
       " processes" + (how == vtkEllipticAlgorithm::PT_SCOTCH ? " by PT-Scotch." : ".");
 }
 
@@ -146,9 +146,9 @@ void testFilter(const char* name, const MeshData& whole, const Set<Filter>& set,
       set(filter, part);
       filter->Update();
       TAUTLINE_CHECK(messages.empty());
-      TAUTLINE_CHECK(!contains(filter->GetSummary(), wording("divided-anew")) ||
+      TAUTLINE_CHECK(!contains(filter->GetSummary(), wording("redistributed")) ||
         contains(filter->GetSummary(), sentence(how)));
-      TAUTLINE_CHECK_EQUAL(contains(filter->GetSummary(), wording("divided-anew")),
+      TAUTLINE_CHECK_EQUAL(contains(filter->GetSummary(), wording("redistributed")),
         how != vtkEllipticAlgorithm::NO_REDISTRIBUTION);
       TAUTLINE_CHECK_EQUAL(filter->GetUnknowns(), serial->GetUnknowns());
       for (const Compared& array : arrays)

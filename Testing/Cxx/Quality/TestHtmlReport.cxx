@@ -158,6 +158,15 @@ TAUTLINE_PART(testSections)
   // One element better, two equal.
   TAUTLINE_CHECK(contains(html, "<td>imr</td><td>1</td><td>0</td><td>2</td>"));
   TAUTLINE_CHECK(contains(html, ">fail 10</text>"));
+  // The values are compared as they were measured: with other values, other counts.
+  vtkNew<vtkUnstructuredGrid> measured;
+  measured->DeepCopy(after->GetOutputDataObject(0));
+  measured->GetCellData()->GetArray("imr")->SetTuple1(0, 7);
+  TAUTLINE_SET(report, Begin("t", ""), SetQuality(vtkHtmlReport::AFTER, after),
+    SetQuality(vtkHtmlReport::BEFORE, before));
+  report->SetQualityOutput(vtkHtmlReport::AFTER, "Mesh", measured);
+  TAUTLINE_CHECK(report->AddSections());
+  TAUTLINE_CHECK(contains(report->GetHtml(), "<td>imr</td><td>1</td><td>1</td><td>1</td>"));
   // Other cells: no comparison one by one. Nothing measured: no section of a mesh.
   TAUTLINE_SET(before, SetInputData(strip({ height })), Update());
   TAUTLINE_SET(report, Begin("t", ""), SetQuality(vtkHtmlReport::AFTER, after),
