@@ -389,7 +389,8 @@ std::string describeColors(const MetricHistogram& histogram, const MetricHistogr
   const bool outside = judged && (has(HistogramBar::Below) || has(HistogramBar::Above));
   std::vector<std::string> sentences;
   // Where the metric has no range, the bars have that of the values.
-  const auto isRange = [](const Range& range) { return range.low < range.high; };
+  const auto isRange = [](const Range& range)
+  { return range.low < range.high && std::isfinite(range.low) && std::isfinite(range.high); };
   if (judged && (isRange(info->acceptable2D) || isRange(info->acceptable3D)))
   {
     sentences.push_back(

@@ -20,20 +20,6 @@ namespace tautline
 namespace
 {
 
-/// The number of the output port with a name, or -1.
-int portOf(vtkSMSourceProxy* source, const char* name)
-{
-  for (unsigned int port = 0; port < source->GetNumberOfOutputPorts(); ++port)
-  {
-    const char* known = source->GetOutputPortName(port);
-    if (known && std::strcmp(known, name) == 0)
-    {
-      return static_cast<int>(port);
-    }
-  }
-  return -1;
-}
-
 vtkSmartPointer<vtkSMSourceProxy> newFilter(
   const char* name, vtkSMSourceProxy* input, unsigned int port)
 {
@@ -47,9 +33,23 @@ vtkSmartPointer<vtkSMSourceProxy> newFilter(
 } // anonymous namespace
 
 //------------------------------------------------------------------------------
+int outputPort(vtkSMSourceProxy* source, const char* name)
+{
+  for (unsigned int port = 0; port < source->GetNumberOfOutputPorts(); ++port)
+  {
+    const char* known = source->GetOutputPortName(port);
+    if (known && std::strcmp(known, name) == 0)
+    {
+      return static_cast<int>(port);
+    }
+  }
+  return -1;
+}
+
+//------------------------------------------------------------------------------
 vtkSmartPointer<vtkDataObject> fetchOutput(pqPipelineSource* source, const char* port)
 {
-  const int number = portOf(source->getSourceProxy(), port);
+  const int number = outputPort(source->getSourceProxy(), port);
   if (number < 0 || source->modifiedState() != pqProxy::UNMODIFIED)
   {
     return nullptr;

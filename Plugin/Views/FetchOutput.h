@@ -26,6 +26,9 @@ namespace tautline
  */
 vtkSmartPointer<vtkDataObject> fetchOutput(pqPipelineSource* source, const char* port);
 
+/// The number of the output port with a name, or -1.
+int outputPort(vtkSMSourceProxy* source, const char* name);
+
 /// The data of one process on a port; `time` as in the time keeper of the server.
 vtkSmartPointer<vtkDataObject> fetchPart(
   vtkSMSourceProxy* source, unsigned int port, int process, double time);

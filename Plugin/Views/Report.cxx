@@ -212,18 +212,6 @@ QString summaryOf(vtkSMProxy* proxy)
   return vtkSMPropertyHelper(summary).GetAsString();
 }
 
-/// The port number of an output of Element Quality.
-unsigned int portOf(vtkSMSourceProxy* quality, const char* name)
-{
-  unsigned int port = 0;
-  while (port < quality->GetNumberOfOutputPorts() &&
-    std::strcmp(quality->GetOutputPortName(port), name) != 0)
-  {
-    ++port;
-  }
-  return port;
-}
-
 void setQuality(
   vtkHtmlReport* report, int side, vtkSMSourceProxy* quality, vtkDataObject* mesh, pqServer* server)
 {
@@ -232,8 +220,12 @@ void setQuality(
   report->SetQualityOutput(side, "Mesh", mesh);
   for (const char* table : QualityTables)
   {
-    report->SetQualityOutput(
-      side, table, fetchPart(quality, portOf(quality, table), firstProcess, time));
+    const int port = outputPort(quality, table);
+    if (port >= 0)
+    {
+      report->SetQualityOutput(
+        side, table, fetchPart(quality, static_cast<unsigned int>(port), firstProcess, time));
+    }
   }
   report->SetQualitySummary(side, summaryOf(quality).toUtf8().data());
   report->SetCriteria(vtkSMPropertyHelper(quality, "Criteria").GetAsString());

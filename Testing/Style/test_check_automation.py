@@ -13,7 +13,7 @@ VIOLATIONS = (
     (CI, "jobs:\n", "jobs: [\n", "does not parse"),
     (CI, "release: [bookworm, trixie]", "release: [bookworm]", "the supported releases are"),
     (CI, "release: [bookworm, trixie]", "release: [bookworm, trixie, sid]", "the supported releases are"),
-    (CI, "image: debian:${{ matrix.release }}", "image: ubuntu:24.04", "in container of the release"),
+    (CI, "image: debian:${{ matrix.release }}", "image: ubuntu:24.04", "in the container of the release"),
     (CI, "run: .ci/run", "run: ./run test", "calls .ci/run on []"),
     (CI, "  pull_request:\n", "", "for each push and pull request"),
     (CI, "actions/checkout@v4", "somebody/checkout@v4", "not an action of GitHub's"),
