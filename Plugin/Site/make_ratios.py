@@ -25,19 +25,22 @@ def rows():
     angles = [tl.improve(bracket, preset="aggressive", boundary=boundary) for boundary in ("fixed", SLIDING)]
     yield ("*Improve Mesh*, bracket, boundary fixed", f"{angles[0].smallest_angle_before:.1f}°",
            f"{angles[0].smallest_angle:.0f}°", "smallest dihedral angle")  # fmt: skip
-    yield ("*Improve Mesh*, bracket, boundary slides", f"{angles[1].smallest_angle_before:.1f}°", f"{angles[1].smallest_angle:.0f}°",
+    yield ("*Improve Mesh*, bracket, boundary slides",
+           f"{angles[1].smallest_angle_before:.1f}°", f"{angles[1].smallest_angle:.0f}°",
            "smallest dihedral angle")  # fmt: skip
     bad = tl.perturb(DATA / "plate.vtu", fraction=0.98, percentage=100, seed=9)
     good = tl.optimize(bad)
     worst = good.statistics["imr"]
-    yield ("*Optimize Mesh*, plate perturbed as in example 30", f"{worst['worst_before']:.0f}", f"{worst['worst_after']:.2f}",
+    yield ("*Optimize Mesh*, plate perturbed as in example 30",
+           f"{worst['worst_before']:.0f}", f"{worst['worst_after']:.2f}",
            "worst inverse mean ratio")  # fmt: skip
     numbers = [tl.condition(mesh, preconditioner="jacobi").condition for mesh in (bad, good)]
     yield "*Condition Estimator*, the same", f"{numbers[0]:,.0f}", f"{numbers[1]:,.0f}", "condition number"
     counts = [tl.solve(mesh, source="1", solver="cg", preconditioner="none").iterations for mesh in (bad, good)]
     yield "*Solve PDE*, the same", f"{counts[0]}", f"{counts[1]}", "iterations of CG"
     plain, hybrid = (tl.warp(DATA / "plate.vtu", transform=TURN, method=name) for name in ("femwarp", "hybrid"))
-    yield ("*Warp Mesh*, hole turned by 120°: by FEMWARP; by Hybrid, the default", f"{plain.inverted}", f"{hybrid.inverted}",
+    yield ("*Warp Mesh*, hole turned by 120°: by FEMWARP; by Hybrid, the default",
+           f"{plain.inverted}", f"{hybrid.inverted}",
            "inverted elements")  # fmt: skip
 
 
