@@ -8,6 +8,8 @@
 #ifndef tautline_Matrix_h
 #define tautline_Matrix_h
 
+#include "Loops.h"
+
 #include <array>
 #include <cmath>
 #include <utility>
