@@ -166,6 +166,7 @@ void AdaptationMesh::takeElements(const Mesh& mesh, const unsigned char* skip)
       key.sum = std::accumulate(places.begin(), places.begin() + t.nodes, Index(0));
       keys.push_back(key);
     });
+  // An order that depends on coordinates only makes sums independent of the numbering of the input.
   std::sort(keys.begin(), keys.end(),
     [&](const ElementKey& a, const ElementKey& b)
     {
@@ -206,6 +207,7 @@ void AdaptationMesh::measure()
     cornersOf(view, cell, t.nodes, corners);
     this->Sizes[cell] = t.dimension == 2 ? 0.5 * norm(vectorArea(t, corners.data()))
                                          : volumeOfCell(t, corners.data());
+    // Skipped elements complete the neighborhoods but do not count in integrals.
     const double share = this->Skip[cell] ? 0.0 : this->Sizes[cell] / t.nodes;
     // The edges of the ideal element have length 1, so that this factor is 1 / det W.
     const double ideal = t.sizePerDeterminant / t.scaledJacobianFactor;

@@ -52,6 +52,7 @@ public:
   /// The metric of a point; the largest size where it has no facet.
   MetricTensor metricAt(Index p, double chordError, double largest) const
   {
+    // A point on a feature has one curvature per patch; their intersection satisfies all of them.
     std::set<int> patches;
     this->forEachFacetAt(p, [&](const Features::Facet& facet) { patches.insert(facet.patch); });
     MetricTensor m = isotropicMetric(largest);
@@ -96,6 +97,7 @@ private:
       this->forEachFacetAt(q,
         [&](const Features::Facet& facet)
         {
+          // A fit across a feature would find a nearly infinite curvature.
           if (facet.patch == patch)
           {
             found.insert(found.end(), facet.nodes.begin(), facet.nodes.begin() + facet.size);
@@ -139,6 +141,8 @@ private:
     Vec3 normal = this->normalAt(p, patch);
     std::array<Vec3, 3> axes;
     QuadraticFit fit;
+    // Second derivatives of the height are curvatures only where its slope vanishes, so the plane
+    // is turned until it does.
     for (int turn = 0; turn < turns; ++turn)
     {
       const auto [t1, t2] = frameOfPlane(normal);
@@ -151,6 +155,7 @@ private:
       {
         break;
       }
+      // The height minus its linear part has this normal to first order.
       normal = normal - fit.gradient[0] * t1 - fit.gradient[1] * t2;
       normal = (1.0 / norm(normal)) * normal;
     }
@@ -208,6 +213,7 @@ void setBorderMetrics(const AdaptationMesh& mesh, double chordError, double feat
     {
       continue;
     }
+    // The curvature of the circle through three points is 2 |a x b| / (|a| |b| |a + b|).
     const double curvature = 2.0 * sine / (norm(a) * norm(b) * std::sqrt(length2));
     const double scaled = curvature / length2;
     metrics[p] = metricOfCurvature(

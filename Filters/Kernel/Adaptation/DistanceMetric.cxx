@@ -76,6 +76,7 @@ std::vector<double> wallDistances(
 std::vector<MetricTensor> distanceMetrics(
   const AdaptationMesh& mesh, const std::vector<double>& distances, const LayerSizes& sizes)
 {
+  // Signed distances are symmetric: sizes grow on both sides of a wall.
   std::vector<double> absolute(distances.size());
   std::transform(distances.begin(), distances.end(), absolute.begin(),
     [](double distance) { return std::abs(distance); });
@@ -84,9 +85,13 @@ std::vector<MetricTensor> distanceMetrics(
   parallelFor(mesh.numberOfPoints(), ChunkSize, mesh.threads(),
     [&](Index p)
     {
+      // In layers with the ratio g between successive sizes, the size at the distance d is first +
+      // (g - 1) d.
       const double across = sizes.first + (sizes.growth - 1.0) * absolute[p];
       const double along = std::max(sizes.ratio * sizes.first, across);
       const double length = norm(gradients[p]);
+      // The metric is I / along^2 + (1 / across^2 - 1 / along^2) d d^T, with the direction d of the
+      // distance.
       const double difference = 1.0 / (across * across) - 1.0 / (along * along);
       if (!(length > clearGradient) || !(difference > 0.0))
       {

@@ -23,6 +23,7 @@ bool shapeGradients(const Vec3* p, int dimension, std::array<Vec3, 3>& gradients
   const Vec3 n = cross(a, b);
   if (dimension == 2)
   {
+    // With n = a x b, a . (b x n) = |n|^2, and both vectors lie in the plane of the triangle.
     const double square = dot(n, n);
     gradients = { (1.0 / square) * cross(b, n), (1.0 / square) * cross(n, a), Vec3{ 0, 0, 0 } };
     return square > 0.0 && std::isfinite(1.0 / square);
@@ -105,6 +106,7 @@ void extendToBoundary(const AdaptationMesh& mesh, std::vector<MetricTensor>& hes
       left.push_back(p);
     }
   }
+  // Points that cannot be reached from a known one keep their tensors.
   for (std::size_t before = left.size() + 1; !left.empty() && left.size() < before;)
   {
     before = left.size();
@@ -128,6 +130,7 @@ void extendToBoundary(const AdaptationMesh& mesh, std::vector<MetricTensor>& hes
       }
       (count > 0 ? reached : later).push_back(p);
     }
+    // Points become known only after the round, so that their order does not matter.
     for (const Index p : reached)
     {
       known[p] = 1;
@@ -160,10 +163,12 @@ std::vector<MetricTensor> projectedHessians(
   std::vector<MetricTensor> result(gradients.size());
   for (std::size_t p = 0; p < result.size(); ++p)
   {
+    // The rows are recovered independently, so the matrix is symmetrized.
     const auto mean = [&](int i, int j) { return 0.5 * (rows[i][p][j] + rows[j][p][i]); };
     result[p] = { mean(0, 0), mean(1, 1), mean(2, 2), mean(0, 1), mean(1, 2), mean(0, 2) };
     if (mesh.dimension() == 2)
     {
+      // P H P with the projector P to the tangent plane.
       const Vec3& n = mesh.normals()[p];
       const auto row = [&n](int i) {
         return Vec3{ (i == 0) - n[i] * n[0], (i == 1) - n[i] * n[1], (i == 2) - n[i] * n[2] };
@@ -214,6 +219,7 @@ std::vector<double> hessianNoise(
   parallelFor(mesh.numberOfPoints(), ChunkSize, mesh.threads(),
     [&](Index p)
     {
+      // Second differences amplify rounding by 1 / h^2, most along the shortest edge.
       double shortest = std::numeric_limits<double>::infinity();
       for (const Index q : mesh.neighbors(p))
       {

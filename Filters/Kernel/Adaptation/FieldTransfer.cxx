@@ -91,6 +91,7 @@ TransferSpace enterPlane(TransferMesh& target, TransferMesh& source)
   {
     return TransferSpace::Volume;
   }
+  // The largest simplex determines the plane most accurately.
   const auto largest = std::max_element(target.sizes().begin(), target.sizes().end());
   const TransferMesh::Simplex& s = target.simplices()[largest - target.sizes().begin()];
   const Vec3 origin = target.points()[s[0]];
@@ -161,6 +162,7 @@ BesideGaps findGaps(
   gaps.points.assign(target.points().size(), 0);
   for (Index t = 0; t < target.numberOfSimplices(); ++t)
   {
+    // A target simplex is also beside a gap if it overlaps a source simplex that is.
     for (Index k = overlaps.starts[t]; k < overlaps.starts[t + 1]; ++k)
     {
       beside[t] |= ofSource[overlaps.overlaps[k].simplex];
@@ -335,6 +337,7 @@ void FieldTransfer::findOverlaps()
     failWithoutOverlap("The source covers less than a millionth of the target", this->Target,
       this->Source, this->Options.frame);
   }
+  // Equal totals are only meaningful if each mesh covers the other one.
   this->Result.totalsKept = this->Options.keepTotal &&
     this->Result.sourceCovered >= LeastCoverage * this->Result.sourceSize &&
     this->Result.targetCovered >= LeastCoverage * this->Result.targetSize;
@@ -418,6 +421,7 @@ void FieldTransfer::project(std::vector<TransferPlace>& places, std::vector<unsi
     }
     const PointProjection projection(
       this->Target, this->Source, this->Overlaps, before, this->Options.threads);
+    // All components have the same uncovered points.
     if (first == 0)
     {
       parallelFor(points, PlacesPerChunk, this->Options.threads,
@@ -435,6 +439,7 @@ void FieldTransfer::project(std::vector<TransferPlace>& places, std::vector<unsi
         if (!known[p])
         {
           values.values[p] = this->valueAt(places[p], before[i]);
+          // With equal bounds, this value is kept when totals are restored.
           values.low[p] = values.high[p] = values.values[p];
         }
       }

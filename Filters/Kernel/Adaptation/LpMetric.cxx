@@ -36,6 +36,7 @@ std::vector<MetricTensor> magnitudesOf(const AdaptationMesh& mesh,
     [&](Index p)
     {
       MetricTensor& m = result[p];
+      // The absolute values of the eigenvalues turn an indefinite Hessian into a metric.
       m = functionOf(m, [](double value) { return std::abs(value); });
       const double largest = principalAxes(m).values[2];
       if (!(largest > noise[p]) || !std::isfinite(largest))
@@ -56,6 +57,7 @@ HessianMagnitudes hessianMagnitudes(const AdaptationMesh& mesh, const std::vecto
 {
   HessianMagnitudes result;
   const double magnitude = magnitudeOf(values);
+  // Relative to the largest value, the Hessians of fields of any size stay in range.
   result.unit = magnitude > 0.0 ? magnitude : 1.0;
   const auto count = static_cast<std::size_t>(mesh.numberOfPoints());
   for (int c = 0; c < components; ++c)
@@ -87,6 +89,7 @@ HessianMagnitudes hessianMagnitudes(const AdaptationMesh& mesh, const std::vecto
     result.tensors.clear();
     return result;
   }
+  // The largest size corresponds to the smallest eigenvalue allowed.
   const MetricLimits limits = { 0.0, 1.0 / std::sqrt(leastOfField * largest), ratio };
   limitMetrics(mesh, limits, result.tensors);
   return result;
@@ -162,6 +165,7 @@ double LpMetric::factorFor(const std::vector<double>& weights, double target) co
   const double first = this->integralAt(weights, low);
   low = std::pow(target / first, 2.0 / this->TheMesh.dimension());
   double high = low;
+  // First bracket the factor in both directions, then bisect its logarithm.
   for (int i = 0; i<maximumSteps&& this->integralAt(weights, low)> target; ++i)
   {
     low /= step;
@@ -172,6 +176,7 @@ double LpMetric::factorFor(const std::vector<double>& weights, double target) co
   }
   while (high > (1.0 + precision) * low)
   {
+    // The geometric mean; separate roots avoid overflow.
     const double middle = std::sqrt(low) * std::sqrt(high);
     if (!(middle > low) || !(middle < high))
     {
@@ -189,8 +194,12 @@ double LpMetric::factorForError(double error) const
   const bool largest = !(this->Norm < std::numeric_limits<double>::max());
   if (largest)
   {
+    // The largest error of |x|^2 / 2 is half of the squared circumradius: 1/6 and 3/16 for ideal
+    // elements with edges of length 1.
     return (dimension == 3 ? 3.0 / 16.0 : 1.0 / 6.0) / error;
   }
+  // Per dimension, the mean interpolation error of |x|^2 / 2 over an ideal element with edges of
+  // length 1.
   const double meanOfTrace = dimension == 3 ? 1.0 / 20.0 : 1.0 / 16.0;
   const double exponent = 1.0 / (2.0 + dimension / this->Norm);
   double sum = 0.0;

@@ -189,6 +189,7 @@ private:
     if (!this->Others.empty())
     {
       intersectMetrics(this->TheMesh, this->Others, metrics);
+      // Intersection and gradation change the eigenvalues, so the limits apply again.
       limitMetrics(this->TheMesh, o.limits, metrics);
     }
     if (o.gradation > 0.0)
@@ -231,6 +232,7 @@ private:
     constexpr double near = 0.01, far = 0.1; // relative
     const MetricOptions& o = this->Options;
     const bool elements = o.target == MetricTarget::Elements;
+    // Volumes in units of the ideal element turn the complexity into a number of elements.
     const std::vector<double>& weights =
       elements ? this->TheMesh.idealVolumes() : this->TheMesh.volumes();
     std::vector<MetricTensor> metrics;
@@ -245,6 +247,7 @@ private:
       {
         break; // all sizes are at a limit
       }
+      // The elements that are added later are about proportional to the requested number.
       requested *= o.targetValue / found;
     }
     if (std::abs(found / o.targetValue - 1.0) > far)

@@ -107,6 +107,7 @@ std::vector<Index> spreadPoints(
   }
   constexpr int finest = 4096;
   int coarse = 0, fine = 1;
+  // Double the resolution until there are too many points, then bisect.
   for (std::vector<Index> found = divided(fine); fine <= finest && fits(found);)
   {
     best = std::move(found);

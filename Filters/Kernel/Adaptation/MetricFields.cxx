@@ -63,6 +63,7 @@ public:
     {
       this->findAxes(changed);
       std::vector<MetricTensor> next = this->gradedOf(active);
+      // All neighbors have used the changes of the previous round.
       for (const Index p : changed)
       {
         this->Changed[p] = 0;
@@ -80,6 +81,7 @@ public:
         }
       }
       result.rounds += changed.empty() ? 0 : 1;
+      // Only the neighbors of changed points can change in the next round.
       active = this->pointsNextTo(changed);
     }
     result.complete = changed.empty();
@@ -120,6 +122,7 @@ private:
       MetricTensor grown =
         grownMetric(this->Axes[q], this->TheMesh.point(p) - this->TheMesh.point(q), this->Rate);
       grown = flat ? flattened(grown, this->TheMesh.normals()[p]) : grown;
+      // A cheap test that avoids intersections without effect.
       if (!exceeds(grown, m))
       {
         continue;

@@ -33,6 +33,8 @@ double edgeLength(const Vec3& e, const MetricTensor& a, const MetricTensor& b)
   constexpr double nearlyEqual = 1e-4; // the next term of the series is its fourth power
   const double atA = std::sqrt(squaredLength(e, a)), atB = std::sqrt(squaredLength(e, b));
   const double mean = 0.5 * (atA + atB);
+  // The logarithmic mean (a - b) / ln(a / b), as mean x / atanh(x) with x = |a - b| / (a + b): this
+  // form is accurate for nearly equal lengths.
   const double x = mean > 0.0 ? std::abs(atA - atB) / (atA + atB) : 0.0;
   return mean * (x < nearlyEqual ? 1.0 - x * x / 3.0 : x / std::atanh(x));
 }
@@ -116,6 +118,7 @@ MetricTensor intersection(const MetricTensor& a, const MetricTensor& b, double t
   {
     return b;
   }
+  // Along each common axis, the larger eigenvalue is the smaller size.
   const Matrix axes = root * ofB.eigenvectors();
   return tensorOfMatrix(axes * ofB.eigenvalues().cwiseMax(1.0).asDiagonal() * axes.transpose());
 }
@@ -126,6 +129,8 @@ MetricTensor logEuclideanMean(
 {
   MetricTensor sum = {};
   double total = 0.0;
+  // The log-Euclidean mean (V. Arsigny et al., 2006) is positive definite, and averages sizes
+  // geometrically.
   for (std::size_t i = 0; i < metrics.size(); ++i)
   {
     const MetricTensor logarithm =
@@ -149,6 +154,7 @@ std::array<double, 3> limitedValues(std::array<double, 3> values, const MetricLi
   {
     value = std::min(std::max(value, low), high);
   }
+  // The ratio is limited by reducing the large sizes, so that requested resolution is never lost.
   const double least = values[2] / (limits.ratio * limits.ratio);
   for (double& value : values)
   {
@@ -162,6 +168,7 @@ MetricTensor limited(const MetricTensor& m, const MetricLimits& limits)
 {
   MetricAxes axes = principalAxes(m);
   const std::array<double, 3> values = limitedValues(axes.values, limits);
+  // A tensor within the limits is returned unchanged, without the rounding of its decomposition.
   if (values == axes.values)
   {
     return m;
@@ -204,6 +211,7 @@ MetricTensor flattened(const MetricTensor& m, const Vec3& normal)
   const double determinant = plane[0] * plane[1] - plane[3] * plane[3];
   plane[2] = larger > 0.0 ? std::max(determinant, 0.0) / larger : 0.0;
   plane[4] = plane[5] = 0.0;
+  // The transposed axes turn the tensor back.
   return turned(plane,
     { Vec3{ t1[0], t2[0], normal[0] }, Vec3{ t1[1], t2[1], normal[1] },
       Vec3{ t1[2], t2[2], normal[2] } });

@@ -34,6 +34,7 @@ std::vector<Vec3> evenDirections(int dimension, const std::vector<Vec3>& offsets
       spread[k] += share * square[k];
     }
   };
+  // The point itself is the origin, at the offset -mean from the mean.
   add(mean);
   for (const Vec3& x : offsets)
   {
@@ -97,6 +98,7 @@ QuadraticFit fitQuadratic(
       y[k] = dot(rows[k], offsets[i]);
       length2 += y[k] * y[k];
     }
+    // Weights decrease with the distance, because third derivatives disturb far neighbors most.
     const double weight = length2 > 0.0 ? 1.0 / std::sqrt(length2) : 0.0;
     int column = 0;
     for (int k = 0; k < directions; ++k)
@@ -113,6 +115,7 @@ QuadraticFit fitQuadratic(
   // If several second derivatives fit equally well, the smallest are taken: in a single layer of
   // cells, the transverse ones are 0. The gradient follows from them.
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> first(linear);
+  // Below the triangular factor of the linear terms, the rows contain second derivatives only.
   const Eigen::MatrixXd left = first.householderQ().adjoint() * quadratic;
   const Eigen::VectorXd rotated = first.householderQ().adjoint() * right;
   const Eigen::Index more = std::max<Eigen::Index>(count - directions, 0);

@@ -42,6 +42,7 @@ Vec3 momentOf(const TransferView<N>& view, const TransferMesh& source, const Tra
         }
       });
   Vec3 moment = { 0, 0, 0 };
+  // Scaled to the stored size of the overlap, so that sizes and moments are consistent.
   for (int k = 0; k < N; ++k)
   {
     moment += (each.size * sums[k] / size) * source.points()[source.simplices()[each.simplex][k]];
@@ -228,6 +229,8 @@ void CellTransfer::reconstruct(
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(matrix);
   constexpr double undetermined = 1e-6;
   Eigen::Vector3d found = Eigen::Vector3d::Zero();
+  // Directions in which the neighbors hardly extend, such as the normal of a surface, get no
+  // gradient.
   for (int k = 0; k < 3; ++k)
   {
     if (solver.eigenvalues()[k] > undetermined * solver.eigenvalues()[2])
@@ -237,6 +240,8 @@ void CellTransfer::reconstruct(
     }
   }
   gradient = { found[0], found[1], found[2] };
+  // The limiter of T. Barth and D. Jespersen (1989): at all points of the cell, the linear function
+  // stays between the values of the neighbors.
   double limit = 1.0;
   for (const Index p : points)
   {
@@ -264,12 +269,14 @@ BoundedValues CellTransfer::apply(const std::vector<double>& field) const
     [&](Index cell)
     {
       const Index begin = this->Shares.starts[cell], end = this->Shares.starts[cell + 1];
+      // A target cell outside the source has the value of the nearest source cell.
       const Index first = begin < end ? this->Shares.cells[begin] : this->Others[cell];
       double value = begin < end ? 0.0 : field[first];
       double low = lows[first], high = highs[first];
       for (Index k = begin; k < end; ++k)
       {
         const Index s = this->Shares.cells[k];
+        // The mean of a linear function over a share is its value at the center of the share.
         const double there = linear
           ? field[s] + dot(gradients[s], this->Shares.centers[k] - this->Source.center(s))
           : field[s];

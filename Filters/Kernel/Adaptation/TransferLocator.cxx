@@ -144,6 +144,7 @@ TransferPlace TransferLocator::nearest(const Vec3& given) const
   Vec3 place = x;
   result.simplex =
     this->Tree.nearest(x, [&](Index s) { return this->squaredDistance(s, x, place); });
+  // The search leaves the position of its last candidate, so the nearest one is computed again.
   this->squaredDistance(result.simplex, x, place);
   const TransferMesh::Simplex& s = this->Mesh.simplices()[result.simplex];
   if (s[3] >= 0)
@@ -155,6 +156,7 @@ TransferPlace TransferLocator::nearest(const Vec3& given) const
   const Vec3 &a = this->Mesh.points()[s[0]], &b = this->Mesh.points()[s[1]],
              &c = this->Mesh.points()[s[2]];
   const Vec3 normal = cross(b - a, c - a);
+  // Barycentric coordinates are proportional to the signed areas of the three partial triangles.
   result.weights = weightsOf(std::array<double, 3>{ dot(normal, cross(c - b, place - b)),
     dot(normal, cross(a - c, place - c)), dot(normal, cross(b - a, place - a)) });
   return result;

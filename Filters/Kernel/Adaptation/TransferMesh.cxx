@@ -61,6 +61,7 @@ std::vector<std::array<Index, 3>> trianglesOf(const std::vector<Vec3>& corners)
   {
     return triangulatePolygon(flat).triangles;
   }
+  // A polygon whose projection intersects itself is divided into a fan.
   std::vector<std::array<Index, 3>> fan;
   for (Index k = 1; k + 1 < static_cast<Index>(corners.size()); ++k)
   {
@@ -118,6 +119,7 @@ void TransferMesh::add(const MeshView& view, const unsigned char* skip)
       throw Error("Cell " + std::to_string(cell) +
         " has a point that is not finite or not in the mesh: remove it first (Threshold).");
     }
+    // A cell without simplices keeps the mean of its points as its center.
     this->Centers.push_back(
       begin == end || !usable ? Vec3{ 0, 0, 0 } : (1.0 / static_cast<double>(end - begin)) * sum);
     if (element)
@@ -197,6 +199,8 @@ void TransferMesh::divide(const MeshView& view, Index cell, Index firstPoint)
   const CellTopology& t = topology(cornerType(view.cellTypes[cell]));
   if (this->Dim == 2)
   {
+    // The division starts at the point with the lowest number, so that it does not depend on the
+    // first corner.
     const auto lowest = std::min_element(nodes, nodes + t.nodes) - nodes;
     for (int k = 1; k + 1 < t.nodes; ++k)
     {

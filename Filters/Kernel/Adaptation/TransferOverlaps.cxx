@@ -42,6 +42,7 @@ void overlapsOf(const TransferMesh& target, Index simplex, const BoxTree& tree,
   const bool surface = space == TransferSpace::Surface;
   const double longest = surface ? longestEdge(target, simplex) : 0.0;
   BoundingBox box = boxOf(target, simplex);
+  // Surfaces may be a fraction of an edge apart, so the box is widened.
   box.widen(FarthestHeight * longest);
   const auto first = static_cast<std::ptrdiff_t>(found.size());
   Index pass = 0;
@@ -81,6 +82,7 @@ void overlapsOf(const TransferMesh& target, Index simplex, const BoxTree& tree,
         found.push_back({ { s, size }, side < 0 });
       }
     });
+  // The result does not depend on the order in which the tree is traversed.
   std::sort(found.begin() + first, found.end(),
     [](const FoundOverlap& a, const FoundOverlap& b)
     { return a.overlap.simplex < b.overlap.simplex; });
@@ -144,6 +146,8 @@ void scaleOverlaps(const TransferMesh& target, const TransferMesh& source, Trans
   for (std::size_t s = 0; s < sources; ++s)
   {
     const double size = source.sizes()[s];
+    // Rounding and the tolerances of overlaps must not change integrals over a covered source
+    // simplex.
     if (result.coveredSource[s] >= part * size)
     {
       result.scales[s] = size / result.coveredSource[s];
@@ -283,6 +287,7 @@ TransferOverlaps findOverlaps(const TransferMesh& target, const BoxTree& tree,
         chunk.counts.push_back(static_cast<Index>(chunk.found.size()) - before);
       }
     });
+  // Chunks are joined in their order: the result does not depend on the number of threads.
   collectOverlaps(chunks, result);
   scaleOverlaps(target, source, result);
   return result;

@@ -37,6 +37,7 @@ struct SharedMoments
     {
       for (int k = 0; k < N; ++k)
       {
+        // Rounding may make coordinates at the border of a simplex slightly negative.
         t[i][k] = std::max(0.0, inTarget(i, k));
         s[i][k] = std::max(0.0, inSource(i, k));
         t[N][k] += t[i][k];
@@ -99,6 +100,7 @@ void PointProjection::integrate(Index simplex)
     view.with(this->Source, other)
       .forEachPiece([&](const auto& inTarget, const auto& inSource, double size)
         { moments.add(inTarget, inSource, size); });
+    // The scales make the overlaps of a covered source simplex add up to its size.
     const double scale = this->Overlaps.scales[other];
     for (int i = 0; i < N; ++i)
     {
@@ -157,6 +159,7 @@ void PointProjection::assemble()
   parallelFor(points, RowsPerChunk, this->Threads,
     [&](Index p)
     {
+      // Row sums of the mass matrix are the lumped masses.
       double sum = 0.0;
       for (Index u = this->UseStarts[p]; u < this->UseStarts[p + 1]; ++u)
       {
@@ -188,6 +191,7 @@ void PointProjection::assemble()
           }
         }
       }
+      // With a stable order, equal columns are summed in the order of the simplices.
       std::stable_sort(
         all.begin(), all.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
       for (const auto& [column, mass] : all)
@@ -245,6 +249,7 @@ std::vector<double> PointProjection::solve(
     });
   multiply(x, image);
   algebra.each([&](Index i) { residual[i] = side[i] - image[i]; });
+  // The norm of the right side in which residuals are measured.
   const double size = algebra.sum([&](Index i) { return side[i] * inverse[i] * side[i]; });
   double before = 0.0;
   for (int iteration = 0; iteration < ProjectionIterations; ++iteration)
@@ -284,6 +289,8 @@ void PointProjection::limit(const std::vector<double>& high, BoundedValues& fiel
         }
       });
   };
+  // For the consistent solution u and the lumped solution v, M_L (u - v) is the sum of the fluxes
+  // M_ij (u_i - u_j).
   forEachRow(
     [&](Index i, Index begin, Index end)
     {
@@ -313,6 +320,8 @@ void PointProjection::limit(const std::vector<double>& high, BoundedValues& fiel
         double sum = 0.0;
         for (Index k = begin; k < end; ++k)
         {
+          // A flux is reduced by the stricter of both ends, equally on both sides, which preserves
+          // the total.
           const Index j = this->Columns[k];
           const double part = fluxes[k] > 0.0 ? std::min(up[i], down[j]) : std::min(down[i], up[j]);
           sum += part * fluxes[k];
@@ -352,6 +361,8 @@ BoundedValues PointProjection::apply(std::size_t component) const
       }
       result.low[p] = low;
       result.high[p] = high;
+      // The solution with the lumped mass matrix is a mean of source values, hence within the
+      // bounds.
       result.values[p] = std::clamp(side[p] / this->Common[p], low, high);
     });
   this->limit(this->solve(side, result.values), result);

@@ -18,6 +18,7 @@ public:
   void add(double term)
   {
     const double next = this->Sum + term;
+    // The part that rounding removes is computed exactly if the larger summand comes first.
     this->Lost +=
       std::abs(this->Sum) >= std::abs(term) ? (this->Sum - next) + term : (term - next) + this->Sum;
     this->Sum = next;
@@ -37,6 +38,7 @@ WeightedTotal totalOf(const std::vector<double>& weights, const std::vector<doub
   {
     const double term = weights[i] * values[i];
     total.add(term);
+    // The rounding error of the product is added as well.
     total.add(std::fma(weights[i], values[i], -term));
     magnitude.add(std::abs(term));
   }
@@ -90,6 +92,7 @@ void takeTotal(const std::vector<double>& weights, const std::vector<unsigned ch
     {
       return;
     }
+    // All values move by the same fraction of the distance to their limits.
     const double part = room.value() != 0.0 ? std::min(1.0, missing / room.value()) : 0.0;
     const double rest = missing - part * room.value();
     const bool leaves = std::abs(rest) > RoundingTotal * magnitude;
@@ -98,6 +101,7 @@ void takeTotal(const std::vector<double>& weights, const std::vector<unsigned ch
       {
         double& value = field.values[i];
         value += inside(i) ? part * (limit[i] - value) : 0.0;
+        // A rest beyond all limits is distributed evenly, at the expense of the bounds.
         value += leaves ? rest / size.value() : 0.0;
       });
   }

@@ -15,6 +15,7 @@ constexpr int MostUnique = 6; ///< entries of a symmetric block
 template <int Dim>
 void cofactorsOf(const Packet (&t)[Dim][Dim], Packet (&c)[Dim][Dim])
 {
+  // Cofactors are the derivatives of det T with respect to the entries of T.
   if constexpr (Dim == 2)
   {
     c[0][0] = t[1][1];
@@ -36,10 +37,13 @@ void cofactorChange(const Packet (&t)[Dim][Dim], const Packet (&d)[Dim][Dim], Pa
 {
   if constexpr (Dim == 2)
   {
+    // In 2D, the cofactors are linear in T.
     cofactorsOf<2>(d, c);
   }
   else
   {
+    // Each row of the cofactors is a cross product of two rows of T, so the product rule has two
+    // terms.
     Packet other[3];
     for (int r = 0; r < 3; ++r)
     {
@@ -182,6 +186,7 @@ TargetInvariants<Dim> invariantsOf(
 {
   TargetInvariants<Dim> result;
   result.norm2 = inner<Dim>(t, t);
+  // In 2D, |adj T| equals |T|.
   result.adj2 = adjugate && Dim == 3 ? inner<Dim>(cofactors, cofactors) : result.norm2;
   result.det = Packet{};
   result.trace = Packet{};
@@ -311,6 +316,7 @@ template <int Dim>
 void CurvedEnergy<Dim>::load(
   const SampleItem& item, int packet, const double* x, Packet (&t)[Dim][Dim]) const
 {
+  // T = M^(1/2) (A W^-1) s R; objectives without a metric M, size s or target R omit the factor.
   this->loadIdeal(item, packet, x, t);
   for (auto& row : t)
   {
@@ -439,6 +445,8 @@ void CurvedEnergy<Dim>::gather(std::vector<double>& to) const
     {
       for (Index p = begin; p < end; ++p)
       {
+        // A point gathers its shares in a fixed order, which avoids races and makes the sums
+        // reproducible.
         for (Index k = this->Offsets[p]; k < this->Offsets[p + 1]; ++k)
         {
           const double* share = this->Shares.data() + this->Positions[k] * Dim;
@@ -467,11 +475,13 @@ double CurvedEnergy<Dim>::value(const SampleFunction<Dim>& function, const std::
         cofactorsOf<Dim>(t, cofactors);
         const Packet w = item.table->weights(p);
         const Packet f = function.value(invariantsOf<Dim>(t, cofactors, function.usesAdjugate()));
+        // Padded lanes have weight 0, but 0 times an infinite value would be NaN.
         sum += select(w > 0.0, w * f, Packet{});
       }
       this->Values[i] = item.weight > 0 ? item.weight * sumOf(sum) : 0;
     });
   const double sum = this->total(this->Values);
+  // An undefined value counts as infinite, so that a line search rejects it.
   return std::isnan(sum) ? std::numeric_limits<double>::infinity() : sum;
 }
 
@@ -520,6 +530,7 @@ double CurvedEnergy<Dim>::linearize(const SampleFunction<Dim>& function,
         {
           adjugateGradient<Dim>(kept.t, t.norm2, ofAdjugate);
         }
+        // dF/dT = 2 F_norm T + F_adj grad |adj T|^2 + F_det cof T + F_trace I.
         for (int r = 0; r < Dim; ++r)
         {
           for (int c = 0; c < Dim; ++c)
@@ -642,9 +653,12 @@ void CurvedEnergy<Dim>::addDiagonal(
     {
       for (int s = 0; s <= r; ++s)
       {
+        // Along u, the second derivative of |T|^2 is 2 |g|^2 |u|^2; the determinant has none.
         Packet entry = r == s ? 2.0 * kept.slopes[0] * square : Packet{};
         if (this->Adjugate)
         {
+          // The second derivative of |adj T|^2 along u and v is twice (u T g) (v T g) + (u . v)
+          // (|T|^2 |g|^2 - |T g|^2) - |g|^2 (u T T^t v).
           const Packet isotropic = r == s ? norm2 * square - stretch : Packet{};
           entry += 2.0 * kept.slopes[1] *
             (0.25 * change[0][r] * change[0][s] + isotropic - square * left[r][s]);
@@ -662,6 +676,7 @@ void CurvedEnergy<Dim>::addDiagonal(
         block[r][s] = block[s][r] = entry;
       }
     }
+    // With a metric, a displacement u changes T by M^(1/2) u g^t.
     if (item.rooted)
     {
       conjugate<Dim>(item.root, block);
@@ -685,6 +700,7 @@ void CurvedEnergy<Dim>::changeOf(
   Packet cofactors[Dim][Dim], ofCofactors[Dim][Dim];
   cofactorsOf<Dim>(kept.t, cofactors);
   cofactorChange<Dim>(kept.t, dt, ofCofactors);
+  // The changes of |T|^2 and det T; the others follow where a function uses them.
   Packet change[NumberOfInvariants] = { 2.0 * inner<Dim>(kept.t, dt), Packet{},
     inner<Dim>(cofactors, dt), Packet{} };
   Packet ofAdjugate[Dim][Dim], second[Dim][Dim];
@@ -699,6 +715,7 @@ void CurvedEnergy<Dim>::changeOf(
   {
     change[3] += dt[r][r];
   }
+  // The slopes change by the curvatures times the changes of all invariants.
   Packet slopes[NumberOfInvariants];
   for (int k = 0; k < NumberOfInvariants; ++k)
   {
@@ -791,6 +808,7 @@ std::vector<double> CurvedEnergy<Dim>::leastJacobians(const std::vector<double>&
   for (std::size_t i = 0; i < this->Items.size(); ++i)
   {
     double& own = least[this->Items[i].element];
+    // The determinant of the ideal element converts det(A W^-1) to the Jacobian.
     own = std::min(own, this->Values[i] * this->Items[i].table->idealDeterminant());
   }
   return least;
@@ -823,6 +841,7 @@ SampleRange CurvedEnergy<Dim>::range(
   const SampleFunction<Dim>& function, const std::vector<double>& x, std::size_t items)
 {
   std::vector<double> largest(this->Items.size(), -std::numeric_limits<double>::infinity());
+  // Later calls need the values of the energy, which are restored at the end.
   const std::vector<double> last = this->Values;
   this->forEachItem(
     [&](std::vector<Packet>&, std::size_t i)

@@ -22,6 +22,7 @@ CurvedGuard::CurvedGuard(const std::vector<CurvedElement>& elements, int dimensi
   , Threads(threads)
   , Normal(dimension == 2 ? Vec3{ 0, 0, 1 } : Vec3{ 0, 0, 0 })
 {
+  // Certifiers are expensive to set up, so elements of the same type and orientation share one.
   for (std::size_t e = 0; e < elements.size(); ++e)
   {
     this->Groups[{ elements[e].type, elements[e].mirrored }].push_back(static_cast<Index>(e));
@@ -59,6 +60,7 @@ std::vector<WeakPlace> CurvedGuard::find(const std::vector<double>& x, const Jud
       places.insert(places.end(), list.begin(), list.end());
     }
   }
+  // The order of the elements does not depend on the groups or the threads.
   std::sort(places.begin(), places.end(),
     [](const WeakPlace& a, const WeakPlace& b) { return a.element < b.element; });
   return places;
@@ -104,6 +106,8 @@ std::vector<WeakPlace> CurvedGuard::notRepresented(const std::vector<double>& x,
     {
       for (Index i = 0; i < count; ++i)
       {
+        // Samples represent an element if its certified minimum is at least LeastShare of the
+        // smallest sampled determinant.
         MinimumTolerance tolerance;
         tolerance.relative = LevelTolerance;
         tolerance.level = std::max(LeastShare * sampled[elements[i]], 0.0);

@@ -44,6 +44,7 @@ void CurvedNewton<Dim>::precondition(const std::vector<double>& r, std::vector<d
         }
       }
     });
+  // The result stays in the permitted directions only up to rounding.
   this->Slides.project(z);
 }
 
@@ -52,6 +53,7 @@ template <int Dim>
 void CurvedNewton<Dim>::linearize(const std::vector<double>& x, const NewtonLimits& limits)
 {
   this->Value = this->Energy.linearize(x, this->Gradient, this->Inverse);
+  // holdRidges() also needs the components that the projection removes.
   this->Full = this->Gradient;
   this->Slides.project(this->Gradient);
   this->GradientNorm = std::sqrt(product(this->Gradient, this->Gradient));
@@ -91,6 +93,7 @@ void CurvedNewton<Dim>::linearize(const std::vector<double>& x, const NewtonLimi
   this->precondition(r, z);
   d = z;
   double rz = product(r, z);
+  // Squared norms in the inner product of the preconditioner.
   const double enough = limits.relativeResidual * limits.relativeResidual * rz;
   for (int i = 0; i < limits.iterations && rz > enough && rz > 0; ++i)
   {
@@ -135,6 +138,7 @@ double CurvedNewton<Dim>::search(
     }
     x = from;
     addTo(x, step, this->Direction);
+    // Sliding points return to their surfaces before the energy is evaluated.
     this->Slides.place(x, this->Threads);
     const double value = this->Energy.value(x);
     if (value <= this->Value + armijo * step * this->Slope)

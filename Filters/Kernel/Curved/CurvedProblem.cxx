@@ -44,6 +44,7 @@ CurvedProblem::CurvedProblem(const Mesh& mesh, const CurvedOptions& options)
       std::to_string(MaxElementOrder) +
       "): reduce the mesh to order 1 (Curve Mesh), or remove them.");
   }
+  // The order of the cells does not depend on their division into blocks.
   std::sort(this->Elements.begin(), this->Elements.end(),
     [](const CurvedElement& a, const CurvedElement& b) { return a.cell < b.cell; });
 
@@ -100,6 +101,8 @@ std::vector<double> CurvedProblem::points(const std::vector<double>& x) const
   std::vector<double> result(view.points, view.points + 3 * view.numberOfPoints);
   for (Index p = 0; p < view.numberOfPoints; ++p)
   {
+    // Points that have not moved keep their coordinates exactly; the conversion from the frame
+    // would round them.
     if (std::equal(x.begin() + 3 * p, x.begin() + 3 * (p + 1), this->Start.begin() + 3 * p))
     {
       continue;
@@ -164,6 +167,7 @@ void CurvedProblem::matchGeometry()
     const Vec3 at = { this->Start[3 * p], this->Start[3 * p + 1], this->Start[3 * p + 2] };
     for (std::size_t g = 0; g < this->Geometry.size(); ++g)
     {
+      // Curves can only follow curves of the geometry, and patches only patches.
       if (this->Geometry[g].isCurve() == boundary.isCurve(part) && !this->Geometry[g].empty())
       {
         const Vec3 away = this->Geometry[g].closest(at) - at;
@@ -187,6 +191,7 @@ void CurvedProblem::matchGeometry()
 CurvedRegion CurvedProblem::region(const std::vector<WeakPlace>& around, int rings)
 {
   const auto points = static_cast<Index>(this->X.size() / 3);
+  // A negative number of rings selects the whole mesh.
   std::vector<char> chosen(this->Elements.size(), rings < 0), core(points, rings < 0);
   for (const WeakPlace& place : around)
   {
@@ -220,6 +225,7 @@ CurvedRegion CurvedProblem::region(const std::vector<WeakPlace>& around, int rin
       continue;
     }
     region.elements.push_back(this->Elements[e]);
+    // The copy of the element is renumbered within the region.
     for (Index& p : region.elements.back().nodes)
     {
       if (local[p] < 0)
@@ -288,6 +294,7 @@ void CurvedProblem::makeSlides(CurvedRegion& region, const std::vector<char>& he
     }
     ++region.free;
   }
+  // The first linearization needs the tangents at the positions on the boundary.
   region.slides->place(region.x, this->Options.threads);
   region.slides->accept();
 }

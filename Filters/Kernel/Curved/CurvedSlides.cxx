@@ -35,6 +35,7 @@ void CurvedSlides::place(std::vector<double>& x, int threads)
         return;
       }
       const Vec3 at = { x[3 * p], x[3 * p + 1], x[3 * p + 2] };
+      // The search begins at the last accepted position, so that a rejected step has no effect.
       if (point.kind == Kind::OnPiece)
       {
         point.tried = point.boundary->closest(point.place, at);

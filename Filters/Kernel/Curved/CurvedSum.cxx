@@ -51,10 +51,14 @@ double CurvedSum<Dim>::linearize(
   this->Slopes.assign(this->Terms.size(), 1.0);
   const double result =
     this->Scalarize ? this->Scalarize(values, &this->Slopes) : this->combined(values);
+  // Chain rule: the slopes of the scalarization times the slopes of the outer functions, which
+  // apply() uses as well.
   for (std::size_t k = 0; k < this->Terms.size(); ++k)
   {
     this->Slopes[k] *= this->Terms[k].slope(inner[k]);
   }
+  // Gradients are exact, but the second derivatives omit the curvature of the scalarization and the
+  // outer functions.
   gradient.assign(gradients.front().size(), 0.0);
   diagonal.assign(diagonals.front().size(), PointBlock{});
   for (std::size_t k = 0; k < this->Terms.size(); ++k)
@@ -86,6 +90,7 @@ void CurvedSum<Dim>::apply(const std::vector<double>& d, std::vector<double>& pr
   {
     std::vector<double>& to = k == 0 ? product : own;
     this->Terms[k].energy->apply(d, to);
+    // With slope 1, the first product is already in place.
     if (k == 0 && this->Slopes[0] == 1)
     {
       continue;

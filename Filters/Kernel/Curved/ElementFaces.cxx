@@ -241,6 +241,7 @@ Faces wedgeFaces()
 /// The coordinate u or v of the collapsed cube at height b, from the coordinate a of the pyramid.
 double collapsed(double a, double b)
 {
+  // Rounding must not yield a value above 1; at the apex, any value denotes the same point.
   return b < 1 ? std::min(a / (1 - b), 1.0) : 0;
 }
 

@@ -50,6 +50,8 @@ public:
       this->require(size > 0 && std::isfinite(size), element.cell, "its size is not positive");
       const double ideal =
         topology(cornerType(this->TheMesh.view().cellTypes[element.cell])).sizePerDeterminant;
+      // The length scale of the target is the root of its determinant relative to the ideal
+      // element.
       const double determinant = size / ideal;
       item.perSize = 1 / (Dim == 2 ? std::sqrt(determinant) : std::cbrt(determinant));
     }
@@ -75,6 +77,7 @@ private:
   void applyTensor(SampleItem& item, const double* tensor, Index cell) const
   {
     Eigen::Matrix<double, Dim, Dim> m;
+    // In a planar mesh, the tensor is expressed in the frame of the plane.
     for (int i = 0; i < Dim; ++i)
     {
       for (int j = 0; j < Dim; ++j)
@@ -94,6 +97,7 @@ private:
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, Dim, Dim>> solver(m);
     this->require(m.allFinite() && solver.eigenvalues().minCoeff() > 0, cell,
       "its tensor is not positive definite");
+    // With T = M^(1/2) A W^-1, the best element is ideal if lengths are measured in the metric M.
     const Eigen::Matrix<double, Dim, Dim> root = solver.operatorSqrt();
     item.rooted = true;
     for (int i = 0; i < Dim; ++i)
@@ -220,6 +224,7 @@ CurvedSum<Dim> CurvedOptimization::makeSum(
     SampleItem item;
     item.element = static_cast<Index>(e);
     item.table = table;
+    // Excluded elements have items of weight 0, so that items and elements have the same numbers.
     item.weight = leftOut.count(item.element) > 0 ? 0 : 1;
     items.push_back(item);
   }
@@ -299,6 +304,7 @@ void CurvedOptimization::addPlaces(
       const CurvedElement& element = region.elements[place.element];
       SampleItem item;
       item.element = place.element;
+      // The first items belong to the elements, in the same order.
       item.weight = energy.items()[place.element].weight;
       item.table = std::make_shared<const SampleTable>(*element.type, element.mirrored,
         std::vector<SamplePlace>{ { place.at, CurvedGuard::PlaceShare } });
@@ -326,9 +332,12 @@ bool CurvedOptimization::proceed(CurvedSum<Dim>& sum, const CurvedRegion& region
   record.moving = region.free;
   for (std::size_t k = 0; k < this->Options.objectives.size(); ++k)
   {
+    // The history reports the metric itself, without the function of the objective.
     Objective own = this->Options.objectives[k].objective;
     own.objectiveTemplate = ObjectiveTemplate::Sum;
     const bool larger = metricInfo(own.metric).direction == Direction::LargerIsBetter;
+    // The sign of a metric with better larger values is changed, so that its worst value is the
+    // largest.
     const SampleRange range =
       sum.terms()[k].energy->range(*sampleFunction<Dim>(own), x, this->Items);
     record.mean.push_back(larger ? -range.mean : range.mean);
@@ -479,6 +488,8 @@ bool CurvedOptimization::Descent<Dim>::record()
     this->Best = this->X;
     this->BestObjective = this->Objective;
   }
+  // Inexact Newton method: with the root of the gradient reduction as the tolerance, convergence is
+  // superlinear (Nocedal and Wright, "Numerical Optimization", Section 7.1).
   const double reached =
     this->Newton.gradientNorm() / std::max(this->FirstNorm, std::numeric_limits<double>::min());
   this->Limits.relativeResidual = std::min(LargestResidual, std::sqrt(reached));
@@ -505,6 +516,7 @@ bool CurvedOptimization::Descent<Dim>::isConverged()
     return true;
   }
   const bool small = this->Newton.gradientNorm() <= stopping.gradientNorm * this->FirstNorm;
+  // Half of the slope is the decrease that the quadratic model predicts.
   const bool slow =
     -0.5 * this->Newton.slope() <= stopping.relativeChange * std::abs(this->Objective);
   if (!small && !slow && this->Newton.slope() < 0)
@@ -568,12 +580,15 @@ typename CurvedOptimization::template Descent<Dim>::Outcome CurvedOptimization::
       this->Owner.addPlaces(this->Sum, this->Region, places);
       return Outcome::Accepted;
     }
+    // Add samples where the step fails and compute another direction; after too many attempts, only
+    // shorten the step.
     if (this->Refusals < MostRefusals)
     {
       this->Owner.addPlaces(this->Sum, this->Region, places);
       break;
     }
   }
+  // Points that are newly held change the permitted directions, which is not a failure of the step.
   return this->Region.slides->held() > held ? Outcome::OtherDirection : Outcome::Refused;
 }
 
@@ -684,6 +699,7 @@ CurvedOptimizeResult CurvedOptimization::run()
   const CurvedGuard& guard = this->Problem.guard();
   const std::vector<WeakPlace> first = guard.invalid(this->Problem.x());
   this->Result.invalidBefore = static_cast<Index>(first.size());
+  // In the region, boundary points are already on their surface, which may change the validity.
   CurvedRegion all = this->Problem.region({}, -1);
   this->Invalid = guard.invalid(all.x);
   StopReason before = StopReason::AllValid;
@@ -694,6 +710,7 @@ CurvedOptimizeResult CurvedOptimization::run()
     CurvedUntangleResult found = untangleCurved(this->Problem, untangling);
     this->Result.untangled = true;
     this->Result.history = std::move(found.history);
+    // The records of untangling have no objectives; zeros keep the number of columns constant.
     for (IterationRecord& record : this->Result.history)
     {
       const std::size_t count = this->Options.objectives.size();

@@ -70,6 +70,8 @@ public:
     {
       c = Packet{};
     }
+    // Second derivatives with respect to the invariants are central differences of the analytic
+    // first ones.
     for (int i = 0; i < NumberOfInvariants; ++i)
     {
       term.slopes[i] = this->used(i) ? f.first * own[i] : Packet{};
@@ -94,6 +96,7 @@ public:
       {
         if (this->used(j))
         {
+          // Chain rule for a term f(q): f'' q_i q_j + f' q_ij.
           term.curvatures[secondDerivative(i, j)] =
             f.second * own[i] * own[j] + f.first * per * (slopes[1][j] - slopes[0][j]);
         }
@@ -222,10 +225,12 @@ void UntanglingFunction<Dim>::curvatures(const TargetInvariants<Dim>& t, SampleT
   const Packet root = sqrt(t.det * t.det + this->Epsilon2);
   const Packet chi =
     select(t.det < 0.0, 0.5 * this->Epsilon2 / (root - t.det), 0.5 * (t.det + root));
+  // chi = (det + sqrt(det^2 + eps^2)) / 2 has the derivative chi / root.
   const Packet slope = select(root > 0.0, chi / root, broadcast(1.0)); // d chi / d det
   const Packet inverse = 1.0 / chi;
   const Packet power = Dim == 2 ? inverse : inverseCbrt(chi) * inverseCbrt(chi);
   constexpr double exponent = 2.0 / Dim;
+  // |T|^2 / (n chi^(2/n)) for the shape, and SizeShare times (det^2 + 1) / (2 chi) for the size.
   const Packet shape = t.norm2 * power * (1.0 / Dim);
   const Packet size = SizeShare * 0.5 * (t.det * t.det + 1.0) * inverse;
   term.value = shape + size;

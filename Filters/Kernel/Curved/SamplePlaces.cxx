@@ -41,12 +41,14 @@ LineRule gaussJacobi(int n, int alpha, int beta)
   Eigen::VectorXd diagonal(n), next(std::max(n - 1, 0));
   for (int k = 0; k < n; ++k)
   {
+    // The quotient would be 0 / 0 for Legendre polynomials at k = 0.
     const double sum = 2 * k + alpha + beta;
     diagonal[k] = alpha == beta ? 0 : (beta * beta - alpha * alpha) / (sum * (sum + 2));
   }
   for (int k = 1; k < n; ++k)
   {
     const double sum = 2 * k + alpha + beta;
+    // This factor is 1 for k = 1, where the quotient may be 0 / 0.
     const double last = k == 1 ? 1 : (k + alpha + beta) / (sum - 1);
     next[k - 1] = std::sqrt(4.0 * k * (k + alpha) * (k + beta) * last / (sum * sum * (sum + 1)));
   }
@@ -55,6 +57,7 @@ LineRule gaussJacobi(int n, int alpha, int beta)
   LineRule rule;
   for (int k = 0; k < n; ++k)
   {
+    // The weights are proportional to the squared first components of the eigenvectors.
     const double first = solver.eigenvectors()(0, k);
     rule.emplace_back(fromUnit(solver.eigenvalues()[k]), first * first);
   }
@@ -77,6 +80,8 @@ LineRule gaussLobatto(int n)
     {
       before = std::exchange(value, ((2 * k + 1) * x * value - k * before) / (k + 1));
     }
+    // Up to a factor, Lobatto weights are reciprocal squares of the Legendre polynomial of degree n
+    // - 1.
     weight = 1 / (value * value);
   }
   return normalized(rule);
@@ -85,6 +90,7 @@ LineRule gaussLobatto(int n)
 std::vector<SamplePlace> triangleRule(int n)
 {
   std::vector<SamplePlace> places;
+  // In the collapsed square, the Jacobian 1 - u is the weight of the rule along u.
   for (const auto& [u, first] : gaussJacobi(n, 1, 0))
   {
     for (const auto& [v, second] : gaussJacobi(n, 0, 0))
@@ -175,6 +181,7 @@ std::vector<SamplePlace> quadrature(const ElementType& type)
       places = times(triangleRule(line(orders[0])), gaussLobatto(line(orders[2])));
       break;
     default:
+      // The Jacobian of the collapsed cube is (1 - w)^2, which is the weight of the rule along w.
       places =
         times(squareRule(line(orders[0]), line(orders[1])), gaussJacobi(line(orders[2]), 2, 0));
   }
@@ -212,6 +219,7 @@ std::vector<SamplePlace> lattice(ElementShape shape, const ElementOrders& orders
         const Vec3 at = { part(i, cuts[0]), part(j, cuts[1]), part(k, cuts[2]) };
         const bool triangle = simplex || shape == ElementShape::Wedge;
         const double sum = at[0] + at[1] + (simplex ? at[2] : 0);
+        // The tolerance of half a step includes the points on the slanted face.
         if (!triangle || sum < 1 + 0.5 / cuts[0])
         {
           places.push_back({ at, 1 });

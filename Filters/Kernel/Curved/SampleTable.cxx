@@ -57,6 +57,7 @@ SampleTable::SampleTable(const ElementType& type, bool mirrored, std::vector<Sam
   for (int sample = 0; sample < packets * PacketWidth; ++sample)
   {
     const int packet = sample / PacketWidth, lane = sample % PacketWidth;
+    // Padded lanes repeat the last sample, with weight 0.
     if (sample < count)
     {
       gradients = samples.gradientsAt(this->Places[sample].at);
@@ -72,6 +73,8 @@ SampleTable::SampleTable(const ElementType& type, bool mirrored, std::vector<Sam
         {
           sum += gradients[node][k] * inverse[k][column];
         }
+        // In a mirrored element, the changed sign of the last column makes valid determinants
+        // positive.
         to[node * dimension + column][lane] = mirrored && column == dimension - 1 ? -sum : sum;
       }
     }

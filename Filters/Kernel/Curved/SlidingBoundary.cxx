@@ -145,6 +145,7 @@ FaceMap faceMap(const ElementType& type, const ElementFace& face)
   {
     const auto [a, b, c] = map.form.exponents[k];
     const double s = static_cast<double>(a) / map.form.degrees[0];
+    // For lines, the second degree is 0.
     const double t = b == 0 ? 0 : static_cast<double>(b) / map.form.degrees[1];
     const std::vector<long double> values = space.valuesAt({ s, t, 0 });
     const std::vector<double> functions = type.shapeFunctions(face.place(s, t));
@@ -265,6 +266,7 @@ void clamp(const FacetForm& form, double& s, double& t)
   s = std::min(std::max(s, 0.0), 1.0);
   t = std::min(std::max(t, 0.0), 1.0);
   const double beyond = s + t - 1;
+  // A point beyond the slanted edge moves perpendicularly to it.
   if (form.triangle && beyond > 0)
   {
     s = std::min(std::max(s - 0.5 * beyond, 0.0), 1.0);
@@ -299,6 +301,7 @@ Index SlidingBoundary::addPiece(
   {
     center += 1.0 / static_cast<double>(controls.size()) * c;
   }
+  // A piece lies in the convex hull of its control points, hence in this ball.
   double radius = 0;
   for (const Vec3& c : controls)
   {
@@ -320,6 +323,7 @@ void SlidingBoundary::addFacets(
          next < candidates.size() && candidates[next].corners == candidates[i].corners; ++next)
     {
     }
+    // A face that occurs twice is inside the mesh.
     if (next > i + 1)
     {
       continue;
@@ -394,6 +398,7 @@ void SlidingBoundary::addEdges(Index facet, const std::vector<Vec2>& places)
         edge.controls[std::lround(line.along(place) * degree)] = this->Pieces[facet].controls[k];
       }
     }
+    // Edges begin at the point with the lower number, so that both facets list them alike.
     if (edge.ends[0] > edge.ends[1])
     {
       std::swap(edge.ends[0], edge.ends[1]);
@@ -419,6 +424,7 @@ void SlidingBoundary::addCurves(double featureAngle)
     {
     }
     FacetEdge& edge = this->Edges[i];
+    // All other edges are features: sharp ones, and ones without exactly two facets.
     if (next == i + 2 && angleOf(edge.normal, this->Edges[i + 1].normal) <= featureAngle)
     {
       this->Smooth.push_back({ edge.facet, this->Edges[i + 1].facet });
@@ -499,6 +505,7 @@ void SlidingBoundary::joinParts()
   {
     sets.join(a, b);
   }
+  // Pieces of curves that meet in a smooth point belong to one curve.
   for (std::size_t p = 0; p < this->PiecesAt.size(); ++p)
   {
     if (this->Kinds[p] != CurvePoint)
@@ -563,6 +570,7 @@ CurvedPlace SlidingBoundary::closestOn(Index index, const Vec3& x, Vec2 from) co
   for (int i = 0; i < iterations; ++i)
   {
     const Vec3 r = x - at.x;
+    // Gauss-Newton method: the normal equations of the distance in s and t.
     const double ss = dot(at.byS, at.byS), st = dot(at.byS, at.byT), tt = dot(at.byT, at.byT);
     const double bs = dot(at.byS, r), bt = dot(at.byT, r), det = ss * tt - st * st;
     double ds = ss > 0 ? bs / ss : 0, dt = 0;
@@ -636,6 +644,8 @@ CurvedPlace SlidingBoundary::closest(const CurvedPlace& start, const Vec3& x) co
     {
       for (const Index next : this->PiecesAt[p])
       {
+        // Only pieces of the same part count, and only if their ball is closer than the best point
+        // so far.
         const CurvedPiece& other = this->Pieces[next];
         if (other.part != this->Pieces[piece].part ||
           norm(other.center - x) - other.radius >= least ||
@@ -705,6 +715,7 @@ bool SlidingBoundary::isFlat(Index point, double angle) const
     {
       continue;
     }
+    // The orientation may differ between pieces, so opposite directions also count as parallel.
     if (angleOf(direction, directionOf(piece)) > angle &&
       angleOf(direction, -1.0 * directionOf(piece)) > angle)
     {

@@ -24,6 +24,7 @@ std::shared_ptr<const SampleTable> tableOf(const CurvedElement& element)
   {
     place.weight *= RuleShare;
   }
+  // Quadrature points are inside the element: the nodes sample its boundary.
   const std::vector<Vec3>& nodes = element.type->coordinates();
   for (const Vec3& node : nodes)
   {
@@ -142,6 +143,8 @@ std::vector<SampleItem> CurvedUntangling::itemsOf(const CurvedRegion& region)
   const std::vector<double> squares = energy.meanNorms(region.x);
   for (std::size_t i = 0; i < items.size(); ++i)
   {
+    // With this factor |T|^2 / n is 1 on average, so that elements of all sizes have the same
+    // weight.
     items[i].perSize = squares[i] > 0 ? 1 / std::sqrt(squares[i] / Dim) : 1;
   }
   return items;
@@ -168,6 +171,7 @@ Attempt CurvedUntangling::untangle(CurvedRegion& region)
   std::vector<WeakPlace> weak = best.weak;
   double least = energy.leastDeterminant(x);
   constexpr double tiny = 1e-9, ofLeast = 0.2, slowest = 0.6;
+  // About a fifth of the worst negative determinant, but at least 1e-6.
   double epsilon = std::sqrt(1e-12 + 0.04 * std::min(least, 0.0) * least);
   constexpr int most = 400, patience = 30, steps = 3;
   constexpr int mostWithoutStep = 3;
@@ -193,6 +197,7 @@ Attempt CurvedUntangling::untangle(CurvedRegion& region)
     }
     energy.addItems(added);
     least = energy.leastDeterminant(x);
+    // Added samples may have smaller determinants than the ones that epsilon was chosen for.
     epsilon = std::max(epsilon, ofLeast * std::abs(std::min(least, 0.0)));
     function->setEpsilon(epsilon);
     const double before = sum.value(x);
@@ -257,6 +262,7 @@ Index CurvedUntangling::straighten(const std::vector<WeakPlace>& weak)
     const ElementType& linear = linearType(element.type->shape());
     const int corners = linear.nodes();
     bool good = false;
+    // Small steps move the nodes no farther than necessary.
     for (int step = 1; step <= steps && !good; ++step)
     {
       const double share = static_cast<double>(step) / steps;
@@ -334,6 +340,7 @@ CurvedUntangleResult CurvedUntangling::run()
   }
   if (!weak.empty() && this->Options.straighten)
   {
+    // straighten() compares the number of invalid elements with the length of this list.
     for (const WeakPlace& place : weak)
     {
       this->Result.remaining.push_back(place.element);

@@ -55,6 +55,8 @@ NodeWeights weightsOf(const std::vector<double>& functions)
   NodeWeights weights;
   for (std::size_t n = 0; n < functions.size(); ++n)
   {
+    // At the nodes of the given cell all functions but one vanish up to rounding; dropping them
+    // keeps the lists short.
     constexpr double rounding = 1e-14;
     if (std::abs(functions[n]) > rounding)
     {
@@ -103,6 +105,7 @@ ElementOrders CellPlans::ordersOf(Index cell) const
   for (std::size_t axis = 0; axis < orders.size() && this->Facts.degrees; ++axis)
   {
     const double degree = this->Facts.degrees[3 * cell + static_cast<Index>(axis)];
+    // An order that is not valid becomes 0, which means unknown: the array may contain anything.
     orders[axis] = degree >= 1 && degree <= MaxElementOrder ? static_cast<int>(degree) : 0;
   }
   return orders;
@@ -173,6 +176,8 @@ CellPlan CellPlans::make(int vtkType, int nodes, const ElementOrders& orders) co
   {
     given = &ElementType::ofVtk(vtkType, nodes); // special node counts have no orders
   }
+  // `turns` converts between the numberings of wedges of the input and output types; `changed`
+  // undoes a conversion of the cells that the caller has made.
   const bool turns = isFromInside(vtkType) != isFromInside(plan.type.vtkType);
   const bool changed = isFromInside(vtkType) && this->Facts.wedgesTurned;
   const auto position = [&](int node) { return changed ? turned(node) : node; };
@@ -183,6 +188,7 @@ CellPlan CellPlans::make(int vtkType, int nodes, const ElementOrders& orders) co
   for (const CurvedNode& node : plan.nodes)
   {
     const Vec3& x = node.at;
+    // Exchanging corners 1 and 2 of both triangles exchanges the first two reference coordinates.
     NodeWeights weights = weightsOf(given->shapeFunctions(turns ? Vec3{ x[1], x[0], x[2] } : x));
     for (NodeWeight& weight : weights)
     {

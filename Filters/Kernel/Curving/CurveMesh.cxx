@@ -53,6 +53,7 @@ struct FacetSamples
 FacetSamples makeSamples(CellType shape, int order, bool serendipity)
 {
   FacetSamples samples;
+  // With twice as many steps as the order, every second sample lies between the nodes.
   const int steps = 2 * order;
   const bool isLine = shape == CellType::Unsupported;
   const VtkCellType type = isLine ? curvedLine(order) : curvedType(shape, order, serendipity);
@@ -214,6 +215,7 @@ void Curver::placeCorners()
   const MeshSpace space = this->TheMesh.space();
   for (Index p = 0; p < this->View.numberOfPoints && space.dimension == Dimension::Planar; ++p)
   {
+    // The nearest point of a geometry in space may lie outside the plane of the mesh.
     const Vec3 original = this->originalOf(p);
     double* x = &this->Match.points[3 * p];
     const double off = dot(Vec3{ x[0], x[1], x[2] } - original, space.normal);
@@ -243,6 +245,8 @@ void Curver::keepPoints()
     const CellPlan& plan = this->Plans.of(cell);
     const Index* nodes = this->Cells.connectivity + this->Cells.offsets[cell];
     const Index size = this->Cells.offsets[cell + 1] - this->Cells.offsets[cell];
+    // A point may be a middle node of one cell and a corner of another: the corner takes
+    // precedence.
     for (Index n = 0; n < size; ++n)
     {
       use[nodes[n]] = std::max<unsigned char>(use[nodes[n]], Middle);
@@ -286,6 +290,8 @@ Vec3 Curver::baseOf(const CellPlan& plan, int node, const Index* cell) const
   for (std::size_t c = 0; c < linear.size(); ++c)
   {
     const Index p = this->mergedOf(cell[plan.corners[c]]);
+    // A cell that keeps its shape is displaced by the linear interpolation of the displacements of
+    // its corners.
     base += linear[c] * (keep ? this->cornerOf(p) - this->originalOf(p) : this->cornerOf(p));
   }
   for (const NodeWeight& of : plan.given[node])
@@ -314,6 +320,7 @@ Index Curver::addNode(const CellPlan& plan, int node, const Index* cell, const N
   {
     if (name)
     {
+      // The first node with this merged name has defined the place; later nodes share it.
       place =
         this->NumbersOfPlaces.emplace(this->nameOf(plan, node, cell, true), place).first->second;
     }
@@ -339,6 +346,7 @@ Index Curver::nodeOf(const CellPlan& plan, int node, const Index* cell)
   {
     return this->keptPoints() + this->addNode(plan, node, cell, nullptr);
   }
+  // A node on an edge or face belongs to several cells, which find it by its name.
   const NodeName name = this->nameOf(plan, node, cell, false);
   const auto next = static_cast<Index>(this->Result.starts.size());
   const auto [at, added] = this->Numbers.emplace(name, next);
@@ -384,6 +392,8 @@ void Curver::placeNode(const NodeName& name, const Vec3& target, int part)
     return; // already placed by a curve or by the adjacent facet
   }
   place.known = true;
+  // Curved input already approximates the boundary: its nodes are only projected and do not move to
+  // a smooth surface through the corners.
   const bool keeps = this->Result.curvedBefore > 0;
   const Vec3 to = keeps ? place.base : target;
   place.offset = to - place.base;
@@ -429,6 +439,8 @@ void Curver::placeBoundary()
     const CurvedEdge& edge = boundary.edges[e];
     for (int i = 1; i < order; ++i)
     {
+      // Integer shares of the corners identify a node exactly from each of its cells, without a
+      // comparison of coordinates.
       const int share = NameUnits * i / order;
       NodeName name;
       name.add(edge.first, NameUnits - share);
@@ -436,6 +448,7 @@ void Curver::placeBoundary()
       this->placeNode(name, pointOn(edge.curve, static_cast<double>(i) / order), edge.part);
     }
   }
+  // These types have all face nodes; placeNode() ignores the ones that a serendipity cell lacks.
   const auto nodesOf = [order](CellType type)
   { return curvedNodes(type, curvedType(type, order, false)); };
   const std::vector<CurvedNode> ofTriangles = nodesOf(CellType::Triangle),
@@ -517,6 +530,8 @@ void Curver::writePoints()
 //------------------------------------------------------------------------------
 void Curver::certify()
 {
+  // Certification uses the orientation of the mesh, but the output keeps the node order of the
+  // input cells.
   std::vector<Index> oriented = this->Result.connectivity;
   for (Index cell = 0; cell < this->Cells.numberOfCells && this->Facts.reversed; ++cell)
   {
@@ -615,6 +630,8 @@ void Curver::sampleFacet(const SurfaceProjection& geometry, CellType shape, cons
   const auto measure = [&](const Vec3& x, double& largest)
   {
     const double infinity = std::numeric_limits<double>::infinity();
+    // A sample closer than the largest distance so far cannot change the maximum, so its search
+    // stops early.
     largest = std::max(largest, geometry.distanceOf(x, largest, infinity, piece));
   };
   for (std::size_t s = 0; s < samples.curved.size(); ++s)

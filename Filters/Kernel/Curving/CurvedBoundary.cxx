@@ -112,6 +112,8 @@ Vec3 pointOn(const CurvedFace& face, const std::array<double, MaxFaceNodes>& sha
   Vec3 point = { 0, 0, 0 };
   if (face.size == 3)
   {
+    // Bernstein polynomials of degree 3 on a triangle: each edge has its first three control
+    // points, as the last one belongs to the next edge.
     for (int k = 0; k < 3; ++k)
     {
       const double a = shares[k], b = shares[(k + 1) % 3];
@@ -120,6 +122,7 @@ Vec3 pointOn(const CurvedFace& face, const std::array<double, MaxFaceNodes>& sha
     }
     return point + 6 * shares[0] * shares[1] * shares[2] * face.center;
   }
+  // A Coons patch: both blends of opposite edges minus the bilinear interpolation of the corners.
   const double u = shares[1] + shares[2], v = shares[2] + shares[3];
   point = (1 - v) * pointOn(face.edges[0], u) + v * pointOn(face.edges[2], 1 - u) +
     (1 - u) * pointOn(face.edges[3], 1 - v) + u * pointOn(face.edges[1], v);

@@ -178,6 +178,7 @@ std::vector<double> Follower::ofEdges(const CurvedNode& node) const
     {
       const int share = NameUnits * i / this->Order;
       const int at = this->find({ { a, NameUnits - share }, { b, share } });
+      // The first two functions belong to the ends of the edge, hence the shift.
       row[at] += factor * functions[i + 1];
     }
   }
@@ -205,6 +206,7 @@ void Follower::addFace(const CurvedNode& node, int face, std::vector<double>& ro
   const Vec3 at = triangle ? Vec3{ s[1], s[2], 0 } : Vec3{ s[1] + s[2], s[2] + s[3], 0 };
   const std::vector<double> functions = type.shapeFunctions(at);
   const CellType shape = triangle ? CellType::Triangle : CellType::Quadrilateral;
+  // Lagrange faces list their corners, then the nodes on edges, then the nodes inside.
   for (int n = size + size * (this->Order - 1); n < nodes; ++n)
   {
     const std::vector<double> shares = cornerShares(shape, type.coordinates()[n]);
@@ -220,6 +222,8 @@ void Follower::addFace(const CurvedNode& node, int face, std::vector<double>& ro
     }
     const double weight = factor * functions[n];
     row[found] += weight;
+    // The edges of the face already displace its inner node: only the difference is added, as in a
+    // Boolean sum.
     for (const NodeWeight& of : this->Nodes[found].follows)
     {
       row[of.node] -= weight * of.weight;
@@ -263,6 +267,7 @@ void setPyramid(std::vector<CurvedNode>& nodes)
     nodes[n].follows = ofEdges(nodes[n].at);
     if (nodes[n].place == NodePlace::Inside)
     {
+      // The bubble of the middle of the base vanishes at the apex, quadratically in the height.
       const double share = (1 - nodes[n].at[2]) * (1 - nodes[n].at[2]);
       for (const NodeWeight& of : ofEdges(nodes[base].at))
       {
@@ -317,6 +322,7 @@ VtkCellType curvedLine(int order)
 //------------------------------------------------------------------------------
 std::vector<double> lineFunctions(int order, double t)
 {
+  // The node order of VTK: both ends first, then the inner nodes.
   std::vector<double> places = { 0, 1 }, values;
   for (int i = 1; i < order; ++i)
   {
@@ -352,6 +358,7 @@ std::vector<CurvedNode> curvedNodes(CellType corners, const VtkCellType& type)
       }
     }
     const int count = static_cast<int>(node.corners.size());
+    // A node with four corners lies in a quadrilateral face, or inside a tetrahedron.
     const bool whole = corners == CellType::Tetrahedron && count == topology(corners).nodes;
     node.place = count == 1                                 ? NodePlace::Corner
       : count == 2                                          ? NodePlace::Edge

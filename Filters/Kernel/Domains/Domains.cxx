@@ -42,6 +42,7 @@ Vec3 bend(const Vec3& p, double phi)
   {
     return { 0, 0, 0 };
   }
+  // The bar is bent to an arc of radius L / phi, on which its axis keeps its length.
   const double radius = Length / phi, along = (p[0] - Left) / radius, across = p[1] - Middle;
   return { Left + (radius - across) * std::sin(along) - p[0],
     Middle + radius - (radius - across) * std::cos(along) - p[1], 0 };

@@ -48,6 +48,7 @@ public:
   void curve(const std::function<std::array<double, 2>(double)>& p, double length, int marker,
     int fewest = 1)
   {
+    // A minimum number of segments preserves the shape of a curve at any spacing.
     const auto pieces = std::max<Index>(fewest, std::llround(length / this->Spacing));
     for (Index i = 1; i <= pieces; ++i)
     {
@@ -70,6 +71,7 @@ public:
   }
   void arc(double cx, double cy, double radius, double from, double to, int marker)
   {
+    // At least about two segments per radian keep a hole round if the spacing exceeds its size.
     this->curve(
       [=](double t)
       {
@@ -128,6 +130,7 @@ void drawWrench(Pen& pen)
 {
   constexpr double Ring = 1.0, Hole = 0.5, Half = 0.4, Head = 1.25, At = 5.2, Jaw = 0.55,
                    Depth = 0.1;
+  // The angles at which the sides of handle and jaws meet the circles.
   const double a = std::asin(Half / Ring), b = std::asin(Half / Head), c = std::asin(Jaw / Head);
   pen.moveTo(Ring * std::cos(a), Half);
   pen.arc(0, 0, Ring, a, 2 * Pi - a, Outer);
@@ -186,6 +189,7 @@ void drawBrain(Pen& pen)
   pen.curve(
     [](double t)
     {
+      // The fissure at the top, at an angle of pi / 2, has the profile of a Gaussian.
       const double angle = 2 * Pi * t, away = std::abs(angle - Pi / 2);
       const double fissure = 1.0 - 0.08 * std::exp(-std::pow(away / 0.12, 2));
       return std::array{ 0.8 * fissure * std::cos(angle), 1.0 * fissure * std::sin(angle) };
@@ -295,6 +299,7 @@ SolidBoundary extrude(const PlanarBoundary& plane, double height, double spacing
 /// The points of an icosahedron whose faces are cut into n x n triangles, on the unit sphere.
 void addSphere(SolidBoundary& solid, const Vec3& center, double radius, Index n, int marker)
 {
+  // The corners of a regular icosahedron follow from the golden ratio g.
   const double g = 0.5 * (1.0 + std::sqrt(5.0));
   const Vec3 v[] = { { -1, g, 0 }, { 1, g, 0 }, { -1, -g, 0 }, { 1, -g, 0 }, { 0, -1, g },
     { 0, 1, g }, { 0, -1, -g }, { 0, 1, -g }, { g, 0, -1 }, { g, 0, 1 }, { -g, 0, -1 },
@@ -310,6 +315,8 @@ void addSphere(SolidBoundary& solid, const Vec3& center, double radius, Index n,
     const Index weights[] = { n - i - j, i, j };
     std::array<std::pair<int, Index>, 3> key;
     Vec3 p = { 0, 0, 0 };
+    // Corners with weight 0 are removed from the key, so that adjacent faces find the same points
+    // on their common edge.
     for (std::size_t k = 0; k < 3; ++k)
     {
       key[k] = { weights[k] > 0 ? face[k] : -1, weights[k] };
@@ -361,6 +368,7 @@ SolidBoundary sphereInCube(double spacing)
   }
   constexpr double Radius = 0.15;
   const Vec3 center = { 0.5, 0.5, 0.35 };
+  // An edge of the icosahedron spans an arc of 1.107 radii on the sphere.
   const auto n = std::max<Index>(2, std::llround(1.1 * Radius / spacing));
   addSphere(solid, center, Radius, n, Inner);
   solid.holes.insert(solid.holes.end(), center.begin(), center.end());

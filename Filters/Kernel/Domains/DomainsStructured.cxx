@@ -31,6 +31,7 @@ void addTriangles(const Grid& grid, StructuredMesh& mesh)
     {
       const Index a = nodeAt(grid, i, j), b = nodeAt(grid, i + 1, j);
       const Index c = nodeAt(grid, i + 1, j + 1), d = nodeAt(grid, i, j + 1);
+      // Alternating diagonals avoid a preferred direction of the mesh.
       const bool other = grid.alternate && (i + j) % 2 == 1;
       const Index cut[] = { a, b, c, a, c, d };
       const Index otherCut[] = { a, b, d, b, c, d };
@@ -82,6 +83,7 @@ Index wholeNumber(double value, const char* what)
 StructuredMesh structuredRectangle(Index cells)
 {
   checkDomainSize(static_cast<double>(cells), DomainKind::Structured);
+  // A rectangle of 2 n x n squares has 4 n^2 triangles.
   const auto n = std::max<Index>(
     1, static_cast<Index>(std::llround(std::sqrt(static_cast<double>(cells) / 4.0))));
   const double h = 1.0 / static_cast<double>(n);
@@ -95,10 +97,14 @@ StructuredMesh structuredSquare(double h, double aspectRatio, double layer)
   {
     throw Error("the aspect ratio must be at least 1 and the interaction layer from 0 to 10 wide");
   }
+  // The legs are h sqrt(r) and h / sqrt(r), so that the area of an element does not depend on the
+  // aspect ratio r.
   const double root = std::sqrt(aspectRatio);
   const Index nx = wholeNumber(1.0 / (h * root), "1/(h sqrt(r))");
   const Index ny = wholeNumber(root / h, "sqrt(r)/h");
   const double dx = 1.0 / static_cast<double>(nx), dy = 1.0 / static_cast<double>(ny);
+  // The tolerance prevents an additional row of elements if the layer is a whole number of elements
+  // wide.
   const auto layersX = static_cast<Index>(std::ceil(layer / dx - 1e-9));
   const auto layersY = static_cast<Index>(std::ceil(layer / dy - 1e-9));
   const Grid grid = { nx + 2 * layersX, ny + 2 * layersY, -static_cast<double>(layersX) * dx,

@@ -22,6 +22,7 @@ BernsteinHalving::BernsteinHalving(
   for (const BernsteinFactor& factor : space.factors())
   {
     this->FirstVertex.push_back(first);
+    // Vertex 0 of a factor is the origin; vertex k is the unit point of axis k.
     for (int vertex = 1; vertex <= factor.dimension; ++vertex)
     {
       this->Domain[first + vertex * factor.dimension + vertex - 1] = 1;
@@ -63,6 +64,7 @@ void BernsteinHalving::addGroups(Direction& direction)
     Group group;
     group.length = length(begin);
     const int lanes = std::min(Lanes, count - begin);
+    // Unused lanes repeat the last line.
     const auto line = [&](int lane) { return begin + std::min(lane, lanes - 1); };
     // Beyond the end of a line, its last coefficient is repeated; the results there are not stored.
     const auto entry = [&](int lane, int row)
@@ -71,6 +73,8 @@ void BernsteinHalving::addGroups(Direction& direction)
       return lines.entries[lines.begins[n / lines.width] + std::clamp(row, 0, length(n) - 1)] +
         n % lines.width;
     };
+    // The coefficients of the other half are found from its end, so that they are stored in
+    // reverse.
     for (bool mirrored : { false, true })
     {
       (mirrored ? group.mirrored : group.entries) = this->Entries.size();
@@ -82,6 +86,7 @@ void BernsteinHalving::addGroups(Direction& direction)
         }
       }
     }
+    // Per row, the number of lanes whose lines reach it: lines are sorted by decreasing length.
     group.counts = this->Entries.size();
     for (int row = 0; row < group.length; ++row)
     {
@@ -217,6 +222,8 @@ void BernsteinHalving::halveRows(const BernsteinBisection& lines, double* c, dou
   {
     const int* entries = lines.entries.data() + lines.begins[l];
     const int last = lines.begins[l + 1] - lines.begins[l] - 1;
+    // De Casteljau's algorithm at 1/2: the last entry of each level is a coefficient of the other
+    // half.
     std::copy_n(c + entries[last], width, other + entries[last]);
     for (int level = 1; level <= last; ++level)
     {
@@ -289,6 +296,7 @@ void BernsteinHalving::halve(int direction, Vertices& kept, Vertices& other) con
   other = kept;
   for (int k = 0; k < halved.dimension; ++k)
   {
+    // Both halves get the middle of the edge as a vertex.
     double& a = other[halved.vertices + halved.lines->from * halved.dimension + k];
     double& b = kept[halved.vertices + halved.lines->to * halved.dimension + k];
     a = b = 0.5 * (a + b);

@@ -126,6 +126,8 @@ void BernsteinQuotient::bound(Box& box)
     case QuotientDenominator::RootOfTwo:
     {
       const double* g = this->at(box, 2);
+      // sqrt(f g) is at most (t f + g / t) / 2 for any t > 0, with equality where t f = g / t: t
+      // fits the means.
       const double t = std::sqrt(meanOf(g, this->Size) / meanOf(f, this->Size));
       const double first = 0.5 * t, second = 0.5 / t;
 #pragma omp simd
@@ -139,6 +141,8 @@ void BernsteinQuotient::bound(Box& box)
     {
       const double *g = this->at(box, 2), *h = this->at(box, 3);
       const double p = meanOf(f, this->Size), q = meanOf(g, this->Size), r = meanOf(h, this->Size);
+      // sqrt(f g h) is at most ((a f + b g + c h) / 3)^(3/2) for factors with a b c = 1, which are
+      // fitted to the means.
       const double middle = std::cbrt(p) * std::cbrt(q) * std::cbrt(r);
       const double first = middle / p, second = middle / q, third = middle / r;
       double* sum = this->Sum.data();
@@ -151,6 +155,8 @@ void BernsteinQuotient::bound(Box& box)
       break;
     }
   }
+  // With positive denominators, the smallest quotient of coefficients bounds the function from
+  // below.
   double least = std::numeric_limits<double>::infinity();
 #pragma omp simd reduction(min : least)
   for (std::size_t k = 0; k < this->Size; ++k)
@@ -196,6 +202,7 @@ void BernsteinQuotient::measure(Box& box)
 BernsteinQuotient::Box BernsteinQuotient::split(Box& box)
 {
   ++this->Splits;
+  // The estimates drift away from the true measures with each bisection.
   if (box.age == RefreshAge)
   {
     this->measure(box);
@@ -221,6 +228,7 @@ BernsteinQuotient::Box BernsteinQuotient::split(Box& box)
 //------------------------------------------------------------------------------
 void BernsteinQuotient::lookAtCorners(const Box& box, QuotientMinimum& result)
 {
+  // Coefficients at corners are values of the polynomials, so the quotients there are upper bounds.
   const double* d = this->at(box);
   for (const BernsteinCorner& corner : this->Corners)
   {
@@ -322,6 +330,7 @@ QuotientMinimum BernsteinQuotient::minimum(double power, double tolerance, doubl
   }
   result.lower =
     this->Heap.empty() ? result.upper : std::min(result.upper, this->Heap.front().least);
+  // The bounds of the denominators hold for positive numerators only: there is no lower bound.
   if (result.upper < 0)
   {
     result.lower = -std::numeric_limits<double>::infinity();

@@ -80,6 +80,7 @@ BernsteinSpace::BernsteinSpace(std::vector<BernsteinFactor> factors)
         BernsteinExponents all = this->Exponents[k];
         std::copy_n(own.begin(), factor.dimension, all.begin() + first);
         exponents.push_back(all);
+        // Multinomials are integers: rounding removes the errors of the divisions.
         multinomials.push_back(std::round(this->Multinomials[k] * multinomial));
       }
     }

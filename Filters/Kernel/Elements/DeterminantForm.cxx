@@ -61,11 +61,14 @@ DeterminantForm::DeterminantForm(const BernsteinSpace& map, bool pyramid)
   {
     this->space = d[0].space.times(d[1].space);
     this->cross = BernsteinProduct(d[0].space, d[1].space, this->space);
+    // On a surface in space, the squared length of the normal is the polynomial to bound.
     this->squareSpace = this->space.times(this->space);
     this->square = BernsteinProduct(this->space, this->space, this->squareSpace);
     this->squareBisections = tautline::bisections(this->squareSpace);
     this->squareCorners = tautline::corners(this->squareSpace);
   }
+  // Products have the multinomials of their factors: this factor converts them to the space of the
+  // product, and applies the degrees of the derivatives.
   for (int k = 0; k < this->space.size(); ++k)
   {
     this->factors.push_back(degrees / this->space.multinomial(k));

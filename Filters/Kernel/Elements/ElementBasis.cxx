@@ -133,6 +133,8 @@ ElementBasis serendipityQuadrilateral()
   basis.factors = { { 1, 2 }, { 1, 2 } };
   for (int n = 0; n < 9; ++n)
   {
+    // Serendipity functions have a superlinear degree of at most 2 (D. Arnold, G. Awanou, "The
+    // serendipity family of finite elements", Found. Comput. Math. 11, 2011).
     if (superlinearDegree(n % 3, n / 3, 0) <= 2)
     {
       add(basis, n % 3, n / 3, 0);

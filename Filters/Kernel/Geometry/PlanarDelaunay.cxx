@@ -87,6 +87,7 @@ std::vector<Index> Triangulation::order() const
   const auto rows =
     std::max<Index>(1, static_cast<Index>(std::sqrt(static_cast<double>(this->Count) / 2.0)));
   const auto [low, high] = std::minmax_element(this->Y.begin(), this->Y.begin() + this->Count);
+  // The factor slightly above 1 keeps the highest point in the last row.
   const double height = std::max(*high - *low, 1e-300) * (1.0 + 1e-9) / static_cast<double>(rows);
   std::vector<Index> ids(this->Count), row(this->Count);
   std::iota(ids.begin(), ids.end(), Index(0));
@@ -220,9 +221,12 @@ void Triangulation::legalize(std::vector<std::pair<Index, Index>>& open, Index p
     {
       const Index q = other.points[far], a = this->Triangles[t].points[(corner + 1) % 3],
                   b = this->Triangles[t].points[(corner + 2) % 3];
+      // Only the diagonal of a convex quadrilateral can be exchanged without inverting a triangle.
       if (this->area(p, a, q) > 0.0L && this->area(p, q, b) > 0.0L)
       {
         this->flip(t, corner);
+        // Both triangles still have p as a corner, and new edges opposite to it that must be
+        // checked.
         open.emplace_back(t, 0);
         open.emplace_back(u, 0);
       }

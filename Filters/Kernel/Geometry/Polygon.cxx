@@ -46,6 +46,8 @@ std::vector<Triangle> clipEars(const std::vector<Vec2>& points)
       {
         continue;
       }
+      // A vertex on the boundary of the ear also counts, because it would leave a degenerate
+      // polygon.
       found = std::none_of(left.begin(), left.end(),
         [&](Index v)
         { return v != t[0] && v != t[1] && v != t[2] && contains(a, b, c, points[v]); });
@@ -101,6 +103,7 @@ int cornerOf(const Triangle& triangle, Index what)
 void flipToDelaunay(PolygonMesh& mesh)
 {
   std::vector<Index> pending(mesh.triangles.size());
+  // In reverse, so that triangle 0 is on top of the stack.
   std::iota(pending.rbegin(), pending.rend(), 0);
   while (!pending.empty())
   {
@@ -148,6 +151,7 @@ void flipToDelaunay(PolygonMesh& mesh)
 std::vector<EliminationStep> eliminate(const PolygonMesh& mesh)
 {
   const std::size_t n = mesh.triangles.size();
+  // The dual graph of a triangulated simple polygon is a tree, so there is always a leaf.
   std::vector<int> degree(n);
   std::vector<Index> leaves;
   for (std::size_t t = 0; t < n; ++t)
@@ -213,6 +217,8 @@ Vec2 centreOfMass(const std::vector<Vec2>& polygon)
   {
     const Vec2 &p = polygon[i], &q = polygon[(i + 1) % polygon.size()];
     const Vec2 a = { p[0] - o[0], p[1] - o[1] }, b = { q[0] - o[0], q[1] - o[1] };
+    // Signed triangles from the first vertex add up to the polygon; the centroid of each is at (a +
+    // b) / 3.
     const double twice = a[0] * b[1] - a[1] * b[0];
     area += twice;
     for (int x = 0; x < 2; ++x)
@@ -285,6 +291,7 @@ PolygonMesh triangulatePolygon(std::vector<Vec2> polygon)
   }
   PolygonMesh mesh;
   mesh.points = std::move(polygon);
+  // Ears give any valid triangulation, and only need exact signs; the flips then make it Delaunay.
   mesh.triangles = clipEars(mesh.points);
   mesh.neighbours = findNeighbours(mesh.triangles);
   flipToDelaunay(mesh);

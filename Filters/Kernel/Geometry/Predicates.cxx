@@ -29,6 +29,7 @@ using Expansion = std::vector<double>;
 /// a + b = sum + error, exactly.
 void twoSum(double a, double b, double& sum, double& error)
 {
+  // Knuth's algorithm, which needs no order of the magnitudes of a and b.
   sum = a + b;
   const double bVirtual = sum - a;
   error = (a - (sum - bVirtual)) + (b - bVirtual);
@@ -75,6 +76,7 @@ Expansion times(const Expansion& a, const Expansion& b)
   {
     for (double y : b)
     {
+      // A fused multiply-add yields the rounding error of the product exactly.
       const double product = x * y;
       add(result, std::fma(x, y, -product));
       add(result, product);
@@ -101,6 +103,7 @@ int orientation(const Vec2& a, const Vec2& b, const Vec2& c)
 {
   const double left = (a[0] - c[0]) * (b[1] - c[1]), right = (a[1] - c[1]) * (b[0] - c[0]);
   const double det = left - right;
+  // Fast filter: the error bound is proportional to the sum of the absolute terms.
   if (std::abs(det) > OrientationBound * (std::abs(left) + std::abs(right)))
   {
     return sign(det);
@@ -141,6 +144,8 @@ int orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
 int inCircle(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d)
 {
   const Vec2* points[3] = { &a, &b, &c };
+  // Points are lifted to the paraboloid z = x^2 + y^2 around d: the volume of the lifted
+  // tetrahedron has the sign of the test.
   double det = 0.0, permanent = 0.0;
   for (int i = 0; i < 3; ++i)
   {
@@ -170,6 +175,7 @@ int inCircle(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d)
 
 bool segmentsMeet(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d)
 {
+  // This test of the bounding boxes is also the exact answer for collinear segments.
   for (int x = 0; x < 2; ++x)
   {
     if (std::max(a[x], b[x]) < std::min(c[x], d[x]) || std::max(c[x], d[x]) < std::min(a[x], b[x]))

@@ -12,6 +12,7 @@ VertexCells Mesh::vertexCells() const
 {
   VertexCells result;
   result.offsets.assign(this->View.numberOfPoints + 1, 0);
+  // The first pass counts the uses, the second stores them; both must visit them in the same order.
   auto forEachUse = [&](auto visit)
   {
     for (const CellBlock& block : this->Blocks)
@@ -34,6 +35,7 @@ VertexCells Mesh::vertexCells() const
   result.cells.resize(result.offsets.back());
   std::vector<Index> next(result.offsets.begin(), result.offsets.end() - 1);
   forEachUse([&](Index node, Index cell) { result.cells[next[node]++] = cell; });
+  // With one block, cells are visited in ascending order; with several, they are ordered by type.
   if (this->Blocks.size() > 1)
   {
     for (Index v = 0; v < this->View.numberOfPoints; ++v)

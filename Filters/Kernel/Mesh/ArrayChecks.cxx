@@ -35,6 +35,8 @@ Index findFirst(Index count, int threads, const Bad& bad)
       {
         ++found;
       }
+      // On failure, the exchange reloads the smallest position: the loop ends if another chunk was
+      // ahead.
       Index smallest = first;
       while (found < smallest && !first.compare_exchange_weak(smallest, found))
       {

@@ -93,6 +93,7 @@ std::vector<int> connectedBlocks(
 
   using Pair = std::array<int, 2>;
   std::vector<Pair> pairs;
+  // The blocks of a surface may be oriented differently: only other meshes compare the sides.
   const bool sided = group.any(std::any_of(pieces.begin(), pieces.end(),
     [](const BlockPiece& piece) { return piece.piece.mesh->dimension() != Dimension::Surface; }));
   forEachSeamPair(facets,

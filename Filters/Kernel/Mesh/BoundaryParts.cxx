@@ -119,6 +119,7 @@ BoundaryParts boundaryParts(const Mesh& mesh, const Ranks& ranks)
   for (const Part& part : parts)
   {
     number[part.set] = ++result.parts;
+    // The largest part of each component is its outer boundary.
     char& met = seen[componentOfSet[part.set]];
     result.outer.push_back(!met);
     met = 1;
@@ -128,6 +129,7 @@ BoundaryParts boundaryParts(const Mesh& mesh, const Ranks& ranks)
   {
     local[p] = setOf[p] >= 0 ? number[setOf[p]] : 0.0;
   }
+  // Only the facets at owned points are complete: other points get their part from the owner.
   ranks.exchange(local.data(), 1);
   result.part.assign(local.begin(), local.end());
   return result;

@@ -35,6 +35,7 @@ inline std::uint64_t signedNumber(const std::uint64_t* number, const int* member
 void addMarks(const CellTopology& t, const Index* node, std::vector<Mark>& marks)
 {
   std::uint64_t number[MaxNodes];
+  // With mixed numbers, accidental cancellation of different facets is improbable.
   for (int k = 0; k < t.nodes; ++k)
   {
     number[k] = SplitMix::mixed(static_cast<std::uint64_t>(node[k]));
@@ -52,6 +53,7 @@ void addMarks(const CellTopology& t, const Index* node, std::vector<Mark>& marks
     }
     facet = SplitMix::mixed(facet);
     const std::uint64_t sense = signedNumber(number, member, size);
+    // A facet of two consistently oriented cells cancels in both marks.
     for (int k = 0; k < size; ++k)
     {
       own[member[k]].parity ^= facet;
@@ -85,6 +87,7 @@ void addTetrahedra(
         a[k][l] = static_cast<std::uint64_t>(nodes[l][k]);
       }
     }
+    // All lanes are computed, so that the loops vectorize; lanes from `count` on are never read.
     for (auto& of : a)
     {
       for (std::uint64_t& number : of)
@@ -107,6 +110,7 @@ void addTetrahedra(
       const std::uint64_t sum = sense[0][l] + sense[1][l] + sense[2][l] + sense[3][l];
       for (int k = 0; k < 4; ++k)
       {
+        // A vertex is on all faces except the opposite one.
         Mark& mark = marks[nodes[l][k]];
         mark.parity ^= all ^ face[k][l];
         mark.sum += sum - sense[k][l];

@@ -342,6 +342,8 @@ void ShapeFinder::holdBent(const std::vector<unsigned char>& bent, const std::ve
     {
       continue;
     }
+    // The part as a whole bends too much: its bent points leave their planes and lines, and either
+    // slide on the surface or stay fixed.
     const bool inPlane = norm(vectorAt(this->Shape.planes, i)) > 0;
     --(inPlane ? this->Shape.inPlanes : this->Shape.onLines);
     std::fill_n(this->Shape.planes.begin() + 3 * i, 3, 0.0);
@@ -376,6 +378,8 @@ BoundaryShape boundaryShape(
   ranks.exchange(shape.fixed.data());
   ranks.exchange(shape.planes.data(), 3);
   ranks.exchange(shape.lines.data(), 3);
+  // Each rank joins the facets that have an owned point; numberSets() then combines the sets of all
+  // ranks.
   UnionFind sets = finder.joined([&](const Index* nodes, int size)
     { return std::any_of(nodes, nodes + size, [&](Index node) { return ranks.owns(node); }); });
   std::vector<unsigned char> slides(points, 0);
@@ -393,6 +397,7 @@ BoundaryShape boundaryShape(
       boxes[part[i]].add(finder.directionOf(i));
     }
   }
+  // A part may extend over several ranks, so its directions are united.
   if (ranks.several())
   {
     for (const std::vector<DirectionBox>& list : ranks.mesh().group().gatherItems(boxes))

@@ -83,6 +83,7 @@ std::vector<PlacedCell> placedCells(const Mesh& mesh, const CellBlock& block,
     bool collapsed = false;
     for (int k = 0; k < nodes; ++k)
     {
+      // A sum of hashes does not depend on the order of the points.
       key += SplitMix::mixed(static_cast<std::uint64_t>(places[k]));
       for (int j = 0; j < k; ++j)
       {
@@ -140,10 +141,12 @@ std::vector<unsigned char> findCopies(const Mesh& mesh, const std::vector<Index>
     const std::vector<PlacedCell> cells = placedCells(mesh, block, placeOf, several, ghosts);
     for (std::size_t begin = 0, i = 0; i < cells.size(); ++i)
     {
+      // Cells with the same key are compared in pairs, because different cells may share a key.
       begin = cells[i].key == cells[begin].key ? begin : i;
       for (std::size_t j = begin; j < i; ++j)
       {
         const Index a = cells[j].cell, b = cells[i].cell;
+        // If only one of both cells is reversed, they traverse their facets in opposite directions.
         const bool opposite = reversed && (reversed[a] != 0) != (reversed[b] != 0);
         const CellPlaces first = placesOf(view, placeOf, a, nodes),
                          second = placesOf(view, placeOf, b, nodes);
@@ -170,11 +173,14 @@ Overlap findOverlap(const Mesh& mesh, const signed char* validity, const unsigne
     return overlap;
   }
   const Index cells = mesh.view().numberOfCells;
+  // If no cell is valid, the mesh is reversed, and inverted cells are the proper ones.
   const signed char proper =
     std::find(validity, validity + cells, Valid) == validity + cells ? Inverted : Valid;
   FacetTable(mesh).forEachFacet(
     [&](Index smallest, const FacetUse* uses, Index count)
     {
+      // Two proper cells that traverse their facet in the same direction lie on the same side of
+      // it.
       if (count == 2 && uses[0].forward == uses[1].forward && validity[uses[0].cell] == proper &&
         validity[uses[1].cell] == proper && (!counted || counted[smallest]))
       {

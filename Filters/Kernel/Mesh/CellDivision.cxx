@@ -48,7 +48,9 @@ std::vector<int> ownersByTree(RankGroup& group, const MeshView& piece, const uns
   for (Index p = 0; p < piece.numberOfPoints; ++p)
   {
     const Vec3 x = placeOf(p);
+    // Points that are not finite have no position in the tree.
     use[p] = std::isfinite(x[0] + x[1] + x[2]) ? use[p] : static_cast<unsigned char>(Unused);
+    // Points of ghosts also get an owner, but only the points of own cells determine the tree.
     if (use[p] == Counts)
     {
       places.push_back(x);
@@ -93,6 +95,7 @@ CellDivision::CellDivision(
   {
     for (const SentPoint& point : fromRanks[rank])
     {
+      // A point that several ranks have sent is stored once.
       const auto [at, fresh] = known.emplace(point.id, static_cast<Index>(this->Ids.size()));
       this->PartPoints[rank].push_back(at->second);
       if (fresh)
@@ -124,6 +127,8 @@ void CellDivision::file(const MeshView& piece, const std::vector<int>& owners)
   this->PiecePoints.resize(ranks);
   for (Index cell = 0; cell < piece.numberOfCells; ++cell)
   {
+    // The highest rank of the owners of its points gets the cell, so that each cell goes to one
+    // rank.
     int rank = -1;
     for (Index n = piece.offsets[cell]; n < piece.offsets[cell + 1]; ++n)
     {
@@ -149,6 +154,7 @@ void CellDivision::file(const MeshView& piece, const std::vector<int>& owners)
       }
     }
   }
+  // Points without cells stay on this rank.
   for (Index p = 0; p < piece.numberOfPoints; ++p)
   {
     if (last[p] < 0)
@@ -168,6 +174,7 @@ std::vector<std::vector<Index>> CellDivision::cellLists(const MeshView& piece) c
   for (std::size_t rank = 0; rank < this->PieceCells.size(); ++rank)
   {
     const std::vector<Index>& points = this->PiecePoints[rank];
+    // The table is reused: only the entries of the points of this rank are valid.
     for (std::size_t i = 0; i < points.size(); ++i)
     {
       place[points[i]] = static_cast<Index>(i);

@@ -27,6 +27,8 @@ public:
 
   void join(Index a, Index b, bool agree)
   {
+    // Both orders are joined in parallel, so that the set of c + n remains the mirror image of the
+    // set of c.
     this->Sets.join(a, agree ? b : b + this->Count);
     this->Sets.join(a + this->Count, agree ? b + this->Count : b);
   }
@@ -153,6 +155,7 @@ void PieceOrders::addPiece(std::size_t number, const Vec3& origin, bool facets)
       {
         if (count == 2)
         {
+          // In a consistent order, neighbors traverse their common facet in opposite directions.
           const bool agree = uses[0].forward != uses[1].forward;
           this->Disagreeing += !agree;
           sets.join(uses[0].cell, uses[1].cell, agree);
@@ -356,6 +359,7 @@ OrderTotals decide(const std::vector<PiecePart>& parts, const std::vector<PartPa
   OrderSets sets(count);
   for (Index p = 0; p < count; ++p)
   {
+    // A part that is joined with its own opposite has no consistent order.
     if (parts[p].ambiguous)
     {
       sets.join(p, p, false);
@@ -398,6 +402,7 @@ OrderTotals decide(const std::vector<PiecePart>& parts, const std::vector<PartPa
         : totals.firstAmbiguous;
       continue;
     }
+    // With signs, the total size decides; on a surface, the given order of the majority is kept.
     bool turn = haveSigns ? of.inOrder.reversed(sign) : 2 * of.opposite > of.cells;
     if (haveSigns && of.opposite == 0)
     {
@@ -450,6 +455,7 @@ OrderTotals decideTogether(RankGroup& group, const PieceOrders& own, bool haveSi
   std::vector<std::vector<OrderFacet>> sent(group.size());
   for (const OrderFacet& facet : own.Facets)
   {
+    // Both sides of a facet have the same hash, so they arrive at the same rank.
     sent[homeOf(facet.hash, group)].push_back(facet);
   }
   std::vector<Index> firsts = { 0 };
@@ -507,6 +513,7 @@ RankOrder orderOf(RankGroup* group, const std::vector<RankPiece>& pieces,
     found.positiveCells = group->sum(found.positiveCells);
     found.negativeCells = group->sum(found.negativeCells);
   }
+  // If all signs agree, the order is consistent, and neighbors need not be compared.
   const bool settled = haveSigns && (found.negativeCells == 0 || found.positiveCells == 0);
   if (settled)
   {
@@ -520,6 +527,7 @@ RankOrder orderOf(RankGroup* group, const std::vector<RankPiece>& pieces,
   // If signs differ (a tangled or mixed mesh) or do not exist (a surface), compare neighbors.
   const double sign = mirrored ? -1.0 : 1.0;
   PieceOrders own(pieces, validity, dimension, haveSigns);
+  // The signed size of an open part depends on the origin, so all ranks use the same one.
   own.find(
     group ? commonOrigin(*group, pieces) : finitePoint(pieces[0].mesh->view()), group != nullptr);
   std::vector<Turn> turns;
@@ -543,6 +551,7 @@ RankOrder orderOf(RankGroup* group, const std::vector<RankPiece>& pieces,
     result.order.reversed = all.reversed;
     result.order.cells = all.cells;
     result.order.ambiguous = all.ambiguous;
+    // A cell number has a meaning only on its own rank.
     result.order.firstAmbiguous = !group || group->size() == 1 ? all.firstAmbiguous : -1;
     result.reverse = own.reverse(turns);
   }
@@ -596,6 +605,7 @@ void reverseCell(CellType type, Index* nodes)
       std::swap(nodes[1], nodes[3]);
       return;
     case CellType::Hexahedron:
+      // Exchanging the bottom and the top reverses the orientation.
       std::swap_ranges(nodes, nodes + 4, nodes + 4);
       return;
     case CellType::Wedge:

@@ -30,6 +30,7 @@ std::array<double, 9> inverse(const double (&w)[3][3], double det)
   {
     for (int c = 0; c < 3; ++c)
     {
+      // Cyclic indices yield cofactors with their signs.
       const int a = (c + 1) % 3, b = (c + 2) % 3, d = (r + 1) % 3, e = (r + 2) % 3;
       result[3 * r + c] = (w[a][d] * w[b][e] - w[a][e] * w[b][d]) / det;
     }
@@ -88,6 +89,7 @@ CellTopology complete(const Shape& s)
     const double det = dot({ w[0][0], w[1][0], w[2][0] },
       cross({ w[0][1], w[1][1], w[2][1] }, { w[0][2], w[1][2], w[2][2] }));
     t.idealInverse[c] = inverse(w, det);
+    // With this factor, the scaled Jacobian of the ideal cell is 1.
     t.scaledJacobianFactor = lengths / det;
   }
   return t;

@@ -48,6 +48,7 @@ public:
   explicit IdTable(Index count)
   {
     std::size_t size = 16;
+    // At most half of the slots are used, so that probe sequences stay short.
     while (size < 2 * static_cast<std::size_t>(count))
     {
       size *= 2;
@@ -160,6 +161,8 @@ Places findPlaces(const Mesh& mesh, int threads)
   const std::vector<char> used = usedPoints(mesh, threads);
   Places places;
   const Index count = std::count(used.begin(), used.end(), 1);
+  // In most meshes no points coincide: this test in parallel then avoids the sequential search
+  // below.
   if (numberOfParts(count, threads) > 1 && !anyAtOnePlace(view, used, count, threads))
   {
     return places;
@@ -169,6 +172,7 @@ Places findPlaces(const Mesh& mesh, int threads)
   for (Index p = 0; p < view.numberOfPoints; ++p)
   {
     const Index same = used[p] ? table.insert(p, keyOf(p), keyOf) : p;
+    // Most meshes have no coincident points, so the arrays are only created for the first one.
     if (same != p && !places.any)
     {
       places.any = true;
@@ -371,6 +375,7 @@ public:
     {
       return;
     }
+    // Only the first reason that applies is counted.
     Index& reason = uses->collapsing                         ? this->Found.collapsing
       : facets > 2 || !boundary[0] || !boundary[1]           ? this->Found.crowded
       : this->Sided && uses->forward == boundary[1]->forward ? this->Found.overlapping
@@ -396,6 +401,7 @@ public:
     const std::vector<CellAtPlace> cells = cellsByPlace(mesh, places, ghosts);
     for (std::size_t i = 0, first = 0; i < cells.size(); ++i)
     {
+      // If any cell of a group is not a ghost, the first one is not.
       first = cells[i].samePlaces(cells[first]) ? first : i;
       for (int k = 0; cells[i].ghost && k < MaxNodes; ++k)
       {
@@ -421,6 +427,8 @@ public:
     // the point that all ghosts at a location get
     std::vector<Index> pointAt(this->OnSeam.size(), None);
     const auto count = static_cast<Index>(places.several.size());
+    // First the points of cells that are not ghosts, then the others, which join them if the choice
+    // is unique.
     for (const char own : { 1, 0 })
     {
       for (Index p = 0; p < count; ++p)
@@ -459,6 +467,7 @@ public:
       Index& point = pointAt[places.of[p]];
       if (places.several[p] && ofElement[p] && point != Ambiguous)
       {
+        // If different points of elements coincide here, the choice is ambiguous.
         const bool same = point == None || this->Points.find(point) == this->Points.find(p);
         point = !same ? Ambiguous : point == None ? p : point;
       }
@@ -506,6 +515,7 @@ private:
         continue;
       }
       this->Points.join(a[k], b[k]);
+      // All points of both facets belong to one seam, so that connected seams are counted once.
       this->Seams.join(a[MaxFaceNodes - 1], a[k]);
       this->Seams.join(a[MaxFaceNodes - 1], b[k]);
       this->OnSeam[a[k]] = this->OnSeam[b[k]] = 1;
@@ -537,6 +547,7 @@ CoincidentPoints findCoincidentPoints(const Mesh& mesh, const unsigned char* rev
   if (copies)
   {
     *copies = findCopies(mesh, places.of, places.several, reversed, ghosts);
+    // Copies of cells are treated like ghosts, so that they form no seams.
     if (!copies->empty())
     {
       apart = *copies;
@@ -555,6 +566,7 @@ CoincidentPoints findCoincidentPoints(const Mesh& mesh, const unsigned char* rev
       [&collapses](Index place) { return place >= 0 && collapses[place]; });
     facet.forward = facet.forward != (reversed && reversed[facet.cell]);
   }
+  // Facets at the same places become adjacent and, among these, the uses of the same nodes.
   std::sort(facets.begin(), facets.end(),
     [](const SidedFacet& a, const SidedFacet& b)
     {
@@ -714,6 +726,7 @@ Index countNearPoints(
         x[1] + (corner & 2 ? distance : -distance), x[2] + (corner & 4 ? distance : -distance) });
       for (Index q = table.find(box, keyOf); q >= 0 && !found; q = next[q])
       {
+        // Points of a common cell may be this close.
         const double apart = norm(pointOf(view, q) - x);
         found = apart > 0 && apart <= distance && !neighbors(mesh, around, p, q);
       }

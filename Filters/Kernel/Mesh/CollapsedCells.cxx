@@ -83,6 +83,7 @@ Faces remainingFaces(CellType type, const Index* nodes)
     {
       return {};
     }
+    // Two faces with the same nodes in opposite orders have collapsed onto each other.
     const auto opposite = std::find(remaining.begin(), remaining.end(), reversed(face));
     if (opposite != remaining.end())
     {
@@ -185,6 +186,8 @@ std::vector<Index> numbered(const Faces& faces, const std::vector<Index>& nodes,
   if (nodes.size() == 4 && faces.size() == 4 && square == faces.end())
   {
     type = CellType::Tetrahedron;
+    // Faces are counterclockwise from outside, but the base of a tetrahedron is counterclockwise
+    // from its apex.
     const Face& base = *triangle;
     return { base[0], base[2], base[1], apexOver(base, nodes) };
   }
@@ -300,6 +303,7 @@ void appendRemaining(const MeshView& view, const CollapsedCell& collapsed, Colla
   const int given = topology(collapsed.given).nodes;
   std::array<Index, MaxNodes> nodes;
   std::copy_n(view.connectivity + begin, given, nodes.begin());
+  // Collapsed cells are rare: computing the shape again is cheaper than storing it.
   remainingShape(collapsed.given, nodes.data());
   result.connectivity.insert(
     result.connectivity.end(), nodes.begin(), nodes.begin() + topology(collapsed.remaining).nodes);
@@ -327,6 +331,7 @@ CollapsedCells findCollapsedCells(const Mesh& mesh, int threads)
       result.found.insert(result.found.end(), found.begin(), found.end());
     }
   }
+  // Threads find the cells in any order.
   std::sort(result.found.begin(), result.found.end(),
     [](const CollapsedCell& a, const CollapsedCell& b) { return a.cell < b.cell; });
   if (std::all_of(result.found.begin(), result.found.end(),

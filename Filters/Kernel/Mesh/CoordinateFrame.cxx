@@ -34,6 +34,7 @@ double CoordinateRange::spacing(bool singlePrecision) const
   const int digits =
     singlePrecision ? std::numeric_limits<float>::digits : std::numeric_limits<double>::digits;
   const double most = this->farthest();
+  // The distance of adjacent numbers with the exponent of the largest coordinate.
   return most > 0 ? std::ldexp(1.0, std::ilogb(most) + 1 - digits) : 0.0;
 }
 
@@ -80,6 +81,7 @@ CoordinateRange coordinateRange(const MeshView& view)
   {
     return {};
   }
+  // A few extreme cells do not affect the median.
   const auto middle = extents.begin() + static_cast<std::ptrdiff_t>(extents.size() / 2);
   std::nth_element(extents.begin(), middle, extents.end());
   range.extent = *middle;
@@ -92,6 +94,7 @@ CoordinateFrame::CoordinateFrame(const CoordinateRange& range, bool shifted)
 {
   for (int c = 0; shifted && c < 3; ++c)
   {
+    // The values are halved first, because their sum may overflow.
     const double middle = 0.5 * range.low[c] + 0.5 * range.high[c];
     const double extent = std::max(range.high[c] - range.low[c], range.extent);
     const bool far =

@@ -44,6 +44,7 @@ std::vector<Index> coordinateOrder(const DistributedMesh& mesh)
     }
   }
   std::sort(own.begin(), own.end());
+  // Sample sort: each rank receives a contiguous range of the order.
   const std::vector<std::vector<PlacedPoint>> sent = splitIntoRanges(group, own);
   const std::vector<std::vector<PlacedPoint>> received = group.exchangeItems(sent);
 
@@ -68,6 +69,7 @@ std::vector<Index> coordinateOrder(const DistributedMesh& mesh)
   std::sort(range.begin(), range.end(),
     [](const Arrival& a, const Arrival& b) { return a.point < b.point; });
   Index before = 0;
+  // Ranges have the order of the ranks, so the counts of the lower ranks yield the first position.
   const auto lengths = group.gatherItems(std::vector<Index>{ static_cast<Index>(range.size()) });
   for (int rank = 0; rank < group.rank(); ++rank)
   {
@@ -118,6 +120,7 @@ std::vector<Index> coordinateOrder(
     }
     else if (isOne(p))
     {
+      // Unused points and points that are not finite come last, in their given order.
       others.push_back(p);
     }
   }

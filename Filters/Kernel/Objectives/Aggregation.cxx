@@ -59,6 +59,8 @@ std::int32_t pairUp(const Graph& graph, std::vector<std::int32_t>& aggregate)
         continue;
       }
       const float strength = graph.strengths[i];
+      // All neighbors count, also those already paired: a weakly coupled free neighbor is then
+      // rejected.
       strongest = std::max(strongest, strength);
       if (aggregate[column] < 0 && strength > best)
       {
@@ -66,6 +68,8 @@ std::int32_t pairUp(const Graph& graph, std::vector<std::int32_t>& aggregate)
         partner = column;
       }
     }
+    // A row without a strongly coupled free neighbor stays alone, because a weak partner would make
+    // the coarse correction worse.
     aggregate[row] = count;
     if (partner >= 0 && best >= static_cast<float>(weakest) * strongest)
     {
@@ -100,6 +104,8 @@ Graph joined(const Graph& fine, const std::vector<std::int32_t>& aggregate, std:
         }
       }
     };
+    // First list the columns of all rows of the aggregate: entries get their places only after the
+    // columns are sorted.
     forEachPlace(
       [&](std::int32_t, std::int32_t column)
       {
@@ -124,6 +130,8 @@ Graph joined(const Graph& fine, const std::vector<std::int32_t>& aggregate, std:
         coarse.strengths[placeOf[column]] += fine.strengths[i];
         places[i] = placeOf[column];
       });
+    // Reset only the entries that were used, so that the cost does not grow with the number of
+    // columns.
     for (const std::int32_t column : found)
     {
       placeOf[column] = -1;
@@ -143,6 +151,8 @@ Aggregates aggregate(Graph fine, int pairings)
   found.graph = std::move(fine);
   std::vector<std::int32_t> pairs, moved;
   std::int32_t count = 0;
+  // The maps of successive pairings are composed, so that they lead from the finest rows to the
+  // last aggregates of up to 2^pairings rows.
   for (int i = 0; i < pairings; ++i)
   {
     count = pairUp(found.graph, pairs);
@@ -156,6 +166,7 @@ Aggregates aggregate(Graph fine, int pairings)
       place = moved[place];
     }
   }
+  // Columns ascend within a row, so bisection finds the diagonal.
   found.diagonals.resize(count);
   for (std::int32_t row = 0; row < count; ++row)
   {

@@ -49,6 +49,7 @@ Graph gathered(const Ranks& ranks, const std::vector<std::int32_t>& numbers,
       // The graph, the data from the ranks, and the graphs of pairs.
       constexpr double copies = 4;
       const auto entries = static_cast<double>(total);
+      // MPI counts are 32-bit: above 2 GiB a gather is not possible at any amount of memory.
       const double bytes = sizeof(float) * entries > 2 * atOnce
         ? HUGE_VAL
         : copies * (sizeof(std::int32_t) + sizeof(float)) * entries;
@@ -59,6 +60,8 @@ Graph gathered(const Ranks& ranks, const std::vector<std::int32_t>& numbers,
   const auto rowsOf = group.gatherItems(numbers), lengthsOf = group.gatherItems(lengths);
   Graph graph;
   graph.starts.assign(rows + 1, 0);
+  // Rows are placed by their global numbers, so that the graph does not depend on the distribution
+  // over the ranks.
   for (std::size_t r = 0; r < rowsOf.size(); ++r)
   {
     for (std::size_t i = 0; i < rowsOf[r].size(); ++i)
@@ -122,6 +125,8 @@ void BlockJacobiMultigrid::invertDiagonals()
         double block[Dim * Dim];
         std::copy_n(blockOf(a.diagonals[row]), Dim * Dim, block);
         double added[Dim];
+        // With a range of one row, all couplings to other rows count as outside: this is an l1
+        // Jacobi smoother.
         addOutside<Dim>(a, row, row, row + 1, this->diagonals<Dim>(), added);
         for (int c = 0; c < Dim; ++c)
         {
@@ -139,6 +144,8 @@ bool BlockJacobiMultigrid::isFloating() const
 {
   const BlockMatrixView& a = this->Matrix;
   const std::vector<std::int32_t>& owned = this->Rows.owned();
+  // A single held row removes the translations from the null space; ranks without rows do not
+  // decide.
   const bool held = std::any_of(owned.begin(), owned.end(),
     [&](std::int32_t row) { return !isFloatingRow<Dim>(a, row, this->diagonals<Dim>()); });
   RankGroup& group = this->Rows.group();
@@ -158,6 +165,7 @@ void BlockJacobiMultigrid::removeTranslation(double* z)
     {
       this->Component[i] = z[Dim * i + c];
     }
+    // An orderless sum makes the mean independent of the distribution of the rows.
     const double mean = group.orderlessSum(this->Component) / total;
     for (std::size_t i = 0; i < count; ++i)
     {
@@ -172,6 +180,8 @@ template <int Dim>
 Graph BlockJacobiMultigrid::couplings(const std::vector<std::int32_t>& numbers) const
 {
   const BlockMatrixView& a = this->Matrix;
+  // Relative to the diagonals, couplings are comparable between rows of elements of very different
+  // sizes.
   std::vector<double> units(this->Rows.rows());
   for (std::size_t row = 0; row < units.size(); ++row)
   {
@@ -202,6 +212,7 @@ void BlockJacobiMultigrid::aggregate()
   RankGroup& group = this->Rows.group();
   const std::vector<std::int32_t> numbers = this->Rows.numbers();
   Graph graph = this->couplings<Dim>(numbers);
+  // The graph is consumed below, but its row starts are needed to find the blocks of each row.
   const std::vector<std::int32_t> fineStarts = graph.starts;
   Aggregates found = tautline::aggregate(std::move(graph), pairings);
   const auto count = static_cast<Index>(found.diagonals.size());
@@ -228,6 +239,8 @@ void BlockJacobiMultigrid::aggregate()
     this->PlaceStarts.push_back(static_cast<Index>(this->PlaceOf.size()));
     this->PlaceOf.insert(this->PlaceOf.end(), begin, begin + a.starts[row + 1] - a.starts[row]);
   }
+  // Each rank sends only its own aggregates and positions; AggregateOf and PlaceOf then index these
+  // compressed lists.
   this->RankAggregates = group.gatherItems(compress(this->AggregateOf));
   this->RankPlaces = group.gatherItems(compress(this->PlaceOf));
   this->Starts = std::move(found.graph.starts);
@@ -254,6 +267,8 @@ void BlockJacobiMultigrid::addUp(const std::vector<std::vector<std::int32_t>>& p
     static_cast<double>(sizeof(double)) * static_cast<double>(total) * components;
   // Gathering all components at once needs memory for the contributions of all ranks.
   const int step = bytes > atOnce ? 1 : components; // number of components gathered together
+  // All ranks add the contributions in the order of the ranks, so that their coarse data are
+  // bitwise identical.
   std::fill(to.begin(), to.end(), 0.0);
   for (int first = 0; first < components; first += step)
   {
@@ -313,6 +328,8 @@ void BlockJacobiMultigrid::build(const BlockMatrixView& matrix)
   const bool flat = matrix.size == 2;
   flat ? this->invertDiagonals<2>() : this->invertDiagonals<3>();
   this->Floating = flat ? this->isFloating<2>() : this->isFloating<3>();
+  // The values change with each Newton iteration, but the aggregates remain good for several of
+  // them.
   if (!this->Coarse || ++this->Reused >= rebuildAfter)
   {
     this->Reused = 0;
@@ -364,6 +381,7 @@ void BlockJacobiMultigrid::cycle(const double* r, double* z)
         }
       });
   };
+  // Pre-smoothing starts at z = 0, where the residual is r itself and needs no product.
   std::fill_n(z, Dim * count, 0.0);
   smooth(r);
   this->Rows.spread(z, this->All, Dim);
@@ -371,6 +389,8 @@ void BlockJacobiMultigrid::cycle(const double* r, double* z)
   this->subtractProduct<Dim>(this->All.data(), this->Rest.data());
   if (this->Coarse)
   {
+    // With piecewise constant aggregates, restriction sums the residual over the rows of an
+    // aggregate, and prolongation copies the correction to all of them.
     const int rank = this->Rows.group().rank();
     this->Own.assign(Dim * this->RankAggregates[rank].size(), 0.0);
     for (Index i = 0; i < Dim * count; ++i)
@@ -378,6 +398,7 @@ void BlockJacobiMultigrid::cycle(const double* r, double* z)
       this->Own[static_cast<Index>(Dim) * this->AggregateOf[i / Dim] + i % Dim] += this->Rest[i];
     }
     this->addUp(this->RankAggregates, this->Own, Dim, this->R);
+    // Each rank solves the same coarse problem, so that the correction needs no communication.
     this->Coarse->solve(this->R.data(), this->Z.data());
     for (std::size_t row = 0; row < this->Aggregate.size(); ++row)
     {
@@ -388,6 +409,7 @@ void BlockJacobiMultigrid::cycle(const double* r, double* z)
     {
       z[i] += this->All[static_cast<Index>(Dim) * this->Rows.owned()[i / Dim] + i % Dim];
     }
+    // `All` now has only the coarse correction, which updates the residual for the post-smoothing.
     this->subtractProduct<Dim>(this->All.data(), this->Rest.data());
   }
   smooth(this->Rest.data());

@@ -293,6 +293,8 @@ void HessianMatrix::addBlocks(const ObjectiveSum& objective, double scale, Hessi
             {
               if constexpr (Size > Dim)
               {
+                // On a surface, the 2 x 2 block B in the plane of the element becomes E^T B E in
+                // space, with the axes E of the element as rows.
                 const auto& b = block[k][m];
                 const int r = e / Size, c = e % Size;
                 entries[e] =
@@ -383,6 +385,8 @@ void HessianMatrix::restrict(Index row, const double* projector)
     }
   };
   double product[9];
+  // The matrix becomes P A P + s (I - P) in this row, with the projector P and the mean diagonal s:
+  // it stays regular in the directions that are removed.
   for (std::int32_t place = this->Starts[row]; place < this->Starts[row + 1]; ++place)
   {
     double* block = this->Blocks.data() + static_cast<Index>(n * n) * place;
@@ -444,10 +448,14 @@ void HessianMatrix::invertDiagonal()
             {
               const double* block =
                 this->Blocks.data() + static_cast<Index>(Dim * Dim) * this->Diagonal[first + l];
+              // Jacobi rotations need an exactly symmetric block, which sums of rounded entries do
+              // not guarantee.
               a[r][c][l] = 0.5 * (block[Dim * r + c] + block[Dim * c + r]);
             }
           }
         }
+        // A fixed number of cyclic sweeps converges for blocks of size 3, and avoids different
+        // branches in the lanes of a packet.
         for (int sweep = 0; sweep < sweeps; ++sweep)
         {
           for (int p = 0; p < Dim; ++p)
@@ -562,6 +570,8 @@ void HessianMatrix::sweep(const double* r, double* z) const
       for (Index row = begin; row < end; ++row)
       {
         double sum[Dim] = {};
+        // Couplings to rows outside the range are skipped, so that ranges are independent and the
+        // result is the same for any number of threads.
         for (std::int32_t place = this->Starts[row]; place < this->Diagonal[row]; ++place)
         {
           if (this->Columns[place] >= begin)
@@ -578,6 +588,7 @@ void HessianMatrix::sweep(const double* r, double* z) const
         addProduct<Dim>(this->Inverse.data() + Dim * Dim * row, rest, own);
         std::copy_n(own, Dim, z + Dim * row);
       }
+      // The backward sweep subtracts D^-1 U z from the result of the forward sweep.
       for (Index row = end - 1; row >= begin; --row)
       {
         double sum[Dim] = {};

@@ -20,6 +20,7 @@ MatrixRows::MatrixRows(
     {
       free[p] = 1;
     }
+    // Copies of a point follow its owner, so that all ranks agree which points are free.
     ranks.exchange(free.data());
     this->Points.clear();
     for (Index p = 0; p < numberOfPoints; ++p)
@@ -42,6 +43,8 @@ MatrixRows::MatrixRows(
   {
     this->Halo = ranks.mesh().subset(free);
   }
+  // The lists contain points until here; with rows, vectors of the matrix can be exchanged
+  // directly.
   for (auto& neighbour : this->Halo.neighbours)
   {
     for (std::vector<std::int32_t>* list : { &neighbour.sent, &neighbour.received })
@@ -112,6 +115,8 @@ std::vector<std::int32_t> MatrixRows::numbers() const
   {
     throw Error("The mesh has too many points for Newton's method: choose Local Newton or L-BFGS.");
   }
+  // Sorted global numbers of points define the numbers of the rows, independent of the
+  // distribution.
   std::sort(all.begin(), all.end());
   std::vector<std::int32_t> numbers(this->rows());
   for (Index row = 0; row < this->rows(); ++row)

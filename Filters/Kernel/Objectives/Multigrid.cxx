@@ -74,6 +74,8 @@ void invertDiagonals(Level& level, int threads)
       for (Index row = begin; row < end; ++row)
       {
         double* added = level.added.data() + Dim * row;
+        // The range is the chunk of a sweep: couplings to other chunks are ignored there and
+        // compensated on the diagonal.
         addOutside<Dim>(a, row, begin, end, diagonalsOf<Dim>(a), added);
         double block[Dim * Dim];
         std::copy_n(a.blocks + static_cast<Index>(Dim * Dim) * a.diagonals[row], Dim * Dim, block);
@@ -171,6 +173,7 @@ void factorizeDense(Level& level)
       }
     }
   }
+  // Cholesky factorization by rows; the factor replaces the lower triangle.
   for (std::size_t r = 0; r < n; ++r)
   {
     double* row = level.dense.data() + r * n;
@@ -199,6 +202,7 @@ void factorizeDense(Level& level)
 
 void solveDense(const std::vector<double>& factor, std::size_t n, const double* b, double* x)
 {
+  // Forward substitution with the factor L, then backward substitution with its transpose.
   for (std::size_t r = 0; r < n; ++r)
   {
     double sum = b[r];
@@ -317,6 +321,8 @@ void forward(const Level& level, int threads, const double* r, double* z, double
         {
           add(i);
         }
+        // z solves (L + D + added) z = r within its range, so `added` z returns to the residual r -
+        // A z.
         for (int c = 0; c < Dim; ++c)
         {
           rest[Dim * row + c] = level.added[Dim * row + c] * z[Dim * row + c] - sum[c];
@@ -418,6 +424,8 @@ void Multigrid::refill()
 void Multigrid::build(const BlockMatrixView& matrix)
 {
   this->Floating = matrix.size == 2 ? isFloating<2>(matrix) : isFloating<3>(matrix);
+  // With the same pattern only the values have changed, so the aggregates are kept for several
+  // matrices.
   const bool same = !this->Levels.empty() && this->Size == matrix.size &&
     this->Levels[0]->matrix.rows == matrix.rows &&
     this->Levels[0]->matrix.columns == matrix.columns;
@@ -451,6 +459,8 @@ void Multigrid::cycle(std::size_t i, const double* r, double* z)
   if (i + 1 < this->Levels.size())
   {
     Level& coarse = *this->Levels[i + 1];
+    // The coarse right-hand side is the residual restricted by the transposed piecewise constant
+    // prolongation.
     std::fill(coarse.r.begin(), coarse.r.end(), 0.0);
     for (Index row = 0; row < level.matrix.rows; ++row)
     {
@@ -516,11 +526,14 @@ void Multigrid::solveCoarse(std::size_t i)
     return;
   }
   const VectorAlgebra algebra(n, this->Threads);
+  // A K-cycle (Y. Notay, "An aggregation-based algebraic multigrid method", ETNA 37, 2010): without
+  // these inner iterations, plain aggregation slows down with the number of levels.
   this->cycle<Dim>(i, level.r.data(), level.p.data());
   multiply<Dim>(level.matrix, this->Threads, level.p.data(), level.ap.data());
   const double pap = algebra.dot(level.p.data(), level.ap.data());
   const double pr = algebra.dot(level.p.data(), level.r.data());
   const double before = algebra.dot(level.r.data(), level.r.data());
+  // Along a direction of the null space, p^T A p is 0 up to rounding: no step is taken.
   const double alpha = pap > 0 && std::isfinite(pr / pap) ? pr / pap : 0.0;
   algebra.each(
     [&](Index k)

@@ -56,10 +56,14 @@ bool canUntangle(const Objective& objective)
   const T objectiveTemplate = objective.objectiveTemplate == T::Default
     ? defaultTemplate(objective.metric)
     : objective.objectiveTemplate;
+  // Here inverted elements have larger values, so any template that increases with the value drives
+  // them back to validity.
   if (info.inverted == InvertedValue::Larger)
   {
     return isIn(objectiveTemplate, { T::SumOfSquares, T::Sum, T::PowerMean, T::Maximum });
   }
+  // A metric that becomes negative still changes smoothly across 0 in a sum; reciprocals would have
+  // a pole there.
   return info.inverted == InvertedValue::Negative && info.direction == Direction::LargerIsBetter &&
     isIn(objectiveTemplate, { T::Sum, T::Maximum });
 }

@@ -61,6 +61,8 @@ Fault faultOf(const Objective& objective)
     return separated && info.inverted == InvertedValue::Negative ? Fault::NotPositive
                                                                  : Fault::Jacobian;
   }
+  // Squares hide the sign of a metric: without this check, an inverted element could reduce the
+  // sum.
   if (objective.objectiveTemplate == T::SumOfSquaredReciprocals ||
     (objective.objectiveTemplate == T::PowerMean && info.direction == Direction::LargerIsBetter))
   {
@@ -112,6 +114,7 @@ ObjectiveSumState::ObjectiveSumState(
       const Index cell = block.cell(i);
       const double w = weights ? weights[cell] : 1.0;
       requireElementWeight(cell, w);
+      // Cells that several ranks have are counted by their owner only.
       sum += this->ranks.ownsCell(cell) ? w : 0.0;
     }
     sums.push_back(sum);
@@ -180,6 +183,8 @@ double ObjectiveSumState::run(double scale, double* gradient) const
 double ObjectiveSumState::runOnRanks(double scale, double* gradient) const
 {
   const MeshView& view = this->elements.mesh().view();
+  // The terms of single cells and orderless sums make value and gradient independent of the
+  // distribution of the cells.
   std::vector<double> terms(view.numberOfCells), own;
   OrderlessSums sums(gradient, gradient ? 3 * view.numberOfPoints : 0);
   this->findTerms(scale, gradient ? &sums : nullptr, terms.data());
@@ -197,6 +202,8 @@ double ObjectiveSumState::runOnRanks(double scale, double* gradient) const
     const double sum = this->ranks.total(own);
     return std::isnan(sum) ? HUGE_VAL : sum;
   }
+  // The terms of a power mean are relative to the largest of all ranks, so that powers neither
+  // overflow nor underflow.
   double unit = 0;
   const auto weightOf = [&](Index cell) {
     return !this->ranks.ownsCell(cell) ? 0.0 : f.weights ? f.weights[cell] : 1.0;

@@ -33,6 +33,7 @@ double logSumExp(const std::vector<double>& x, double c, std::vector<double>& sl
   {
     return largest;
   }
+  // Exponents relative to the largest are at most 0, so that exp() cannot overflow.
   double sum = 0;
   for (std::size_t i = 0; i < x.size(); ++i)
   {
@@ -49,6 +50,7 @@ double logSumExp(const std::vector<double>& x, double c, std::vector<double>& sl
 /// ln(exp(x) - 1) for x > 0.
 double logExpMinusOne(double x)
 {
+  // For large x, exp(x) would overflow; for small x, the difference would cancel.
   return x > 1 ? x + std::log1p(-std::exp(-x)) : std::log(std::expm1(x));
 }
 
@@ -57,6 +59,8 @@ double product(const std::vector<double>& x, std::vector<double>& slopes)
 {
   // The wide exponents of long double: a partial product only overflows if the whole product does.
   std::vector<long double> after(x.size() + 1, 1.0L);
+  // Products from both ends give the product of all other factors without a division, which a
+  // factor of 0 would make impossible.
   for (std::size_t i = x.size(); i-- > 0;)
   {
     after[i] = after[i + 1] * x[i];
@@ -135,6 +139,7 @@ Scalarizer::Scalarizer(const ScalarizationOptions& options, const std::vector<do
   }
   else if (options.method == Scalarization::WeightedMinMax)
   {
+    // Normalized objectives have a size of about 1, so the weights determine the scale.
     this->C = *std::max_element(weights.begin(), weights.end()) / sharpness;
   }
   this->BarrierScale = barrierHeight * (initial[0] != 0 ? std::abs(initial[0]) : 1.0);
@@ -183,6 +188,7 @@ double Scalarizer::value(const std::vector<double>& objectives, std::vector<doub
       }
       break;
     case Scalarization::WeightedMinMax:
+      // The maximum of w_i f_i is not differentiable: log-sum-exp approximates it from above.
       for (std::size_t i = 0; i < n; ++i)
       {
         x[i] = this->Weights[i] * normalized(i);
@@ -198,6 +204,8 @@ double Scalarizer::value(const std::vector<double>& objectives, std::vector<doub
       const double p = this->Options.exponent;
       for (std::size_t i = 0; i < n; ++i)
       {
+        // The value is ln(sum_i (exp(p w_i) - 1) exp(p f_i)) / p: the logarithm does not change the
+        // minimizer and prevents overflow.
         x[i] = logExpMinusOne(p * this->Weights[i]) / p + normalized(i);
       }
       result = logSumExp(x, 1 / p, slopes);
@@ -228,6 +236,8 @@ double Scalarizer::value(const std::vector<double>& objectives, std::vector<doub
       }
       break;
     case Scalarization::Rao:
+      // Minus the logarithm of the product of 1 - f_i / 2, where f_i is 0 at the utopia value and 1
+      // at the start.
       for (std::size_t i = 0; i < n; ++i)
       {
         const double factor = 1 - normalized(i) / 2;

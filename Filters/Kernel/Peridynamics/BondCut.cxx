@@ -142,9 +142,12 @@ bool BondCut::isCut(Index t, Index other, const std::vector<std::int32_t>& edges
     }
     const Vec2 p = this->Edges[edge][0], q = this->Edges[edge][1];
     const Vec2 along = q - p;
+    // Cross products are compared with the product of the lengths, so that the test does not depend
+    // on the unit of length.
     const double touching = Touching * length * (length + std::sqrt(dot(along, along)));
     const double sideP = cross(bond, p - a), sideQ = cross(bond, q - a);
     const double sideA = cross(along, a - p), sideB = cross(along, b - p);
+    // A bond through a boundary vertex counts as cut, so that it cannot pass between two edges.
     const bool beside =
       (sideP > touching && sideQ > touching) || (sideP < -touching && sideQ < -touching);
     if (!beside && sideA * sideB < 0.0)

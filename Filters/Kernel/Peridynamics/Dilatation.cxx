@@ -89,6 +89,7 @@ double dilatationFactor(const PeridynamicOptions& options)
 {
   const RadialKernel kernel(options.kernel, options.horizon);
   constexpr bool fromOrigin = true;
+  // The weighted volume m of the disk is 2 pi times the integral of r^5 k(r).
   return 2.0 / (2.0 * Pi * kernel.atHorizon(4, fromOrigin));
 }
 
@@ -178,6 +179,7 @@ private:
         this->add(space.function(triangles, t, k), -at[k] * moments.third);
       }
     }
+    // Increasing order makes the sums below independent of the order in which neighbors are found.
     std::sort(this->Touched.begin(), this->Touched.end());
     row.functions = this->Touched;
     row.values.clear();
@@ -270,6 +272,7 @@ public:
     }
     SparseMatrix& matrix = system.matrix;
     const Index begin = matrix.offsets[2 * u], end = matrix.offsets[2 * u + 1];
+    // The columns of a function are consecutive, and both rows of an unknown have the same pattern.
     for (Index k = begin; k < end; k += 2)
     {
       places[this->Work.space.functionOf[matrix.columns[k] / 2]] = k - begin;
@@ -312,6 +315,8 @@ private:
 void addDilatation(const PeridynamicWork& work, const std::vector<double>* given,
   PeridynamicSystem& system, const std::function<bool(double)>& proceed)
 {
+  // Bonds alone give lambda = mu, so that the dilatation term adds the difference (lambda / mu - 1)
+  // mu.
   const double factor = (lameRatio(work.options) - 1.0) * localModulus(work.options);
   const std::vector<std::int32_t> needed = trianglesWithDilatation(work);
   const auto count = static_cast<Index>(needed.size());
@@ -377,6 +382,7 @@ public:
       }
       const Vec2 jump = this->motion(other, x, g) - own;
       const DilatationMoments moments(m);
+      // theta sums k |xi|^2 xi . (u(y) - u(x)), with u linear in each triangle.
       theta += dot(jump, moments.third) + moments.times(g[0])[0] + moments.times(g[1])[1];
       // (xi . (u(y) - u(x)))^2, in which xi . G xi = a x^2 + b x y + c y^2.
       const double a = g[0][0], b = g[0][1] + g[1][0], c = g[1][1];

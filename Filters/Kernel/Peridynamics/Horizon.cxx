@@ -17,6 +17,7 @@ double exitParameter(Vec2 a, Vec2 b, double radius)
 {
   const Vec2 e = b - a;
   const double alpha = dot(e, e), beta = dot(e, a), gamma = dot(a, a) - radius * radius;
+  // For a point on the circle, rounding may make the discriminant slightly negative.
   return (-beta + std::sqrt(std::max(0.0, beta * beta - alpha * gamma))) / alpha;
 }
 
@@ -35,6 +36,7 @@ double sectorArea(Vec2 a, Vec2 b, double radius)
     return arc(a, b);
   }
   const double t0 = (-beta - std::sqrt(root)) / alpha, t1 = (-beta + std::sqrt(root)) / alpha;
+  // The line meets the circle only beyond the ends of the segment.
   if (t1 <= 0.0 || t0 >= 1.0)
   {
     return arc(a, b);
@@ -169,11 +171,14 @@ DiscIntersection intersectDisc(const double* corners, double x, double y, double
     in[k] = dot(p[k], p[k]) <= radius * radius;
     result.corners += in[k];
   }
+  // The signed areas of the three directed edges add up to the intersection for any position of the
+  // center.
   for (int k = 0; k < 3; ++k)
   {
     result.exactArea += sectorArea(p[k], p[(k + 1) % 3], radius);
   }
   result.exactArea = std::abs(result.exactArea);
+  // The rule of the dissertation (Figure 4.5) replaces the arcs of the circle by chords.
   const auto add = [&](Vec2 a, Vec2 b, Vec2 c)
   {
     result.chordArea += 0.5 * std::abs(cross(b - a, c - a));

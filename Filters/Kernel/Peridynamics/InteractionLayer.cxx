@@ -73,6 +73,8 @@ Place placeOf(Vec2 p, const std::vector<Edge>& edges)
     const double t = std::clamp(dot(toA, e) / dot(e, e), 0.0, 1.0);
     const Vec2 d = toA - t * e;
     nearest = std::min(nearest, dot(d, d));
+    // The margin above 0 also excludes points just outside the circle, whose triangles would be
+    // flat.
     place.crowds = place.crowds || dot(toA, toB) <= 0.1 * dot(e, e);
     const double side = cross(e, toA);
     // Winding number: crossings of the ray to the right.
@@ -120,6 +122,7 @@ std::vector<Vec2> latticePoints(
 {
   const std::vector<Edge>& edges = boundary.edges;
   const Vec2 &low = boundary.low, &high = boundary.high;
+  // Rows of equilateral triangles, of which every second one is shifted by half an element.
   const double reach = options.width + Margin * size, rise = 0.5 * std::sqrt(3.0) * size;
   const Vec2 from = { low[0] - reach, low[1] - reach };
   const double columns = std::ceil((high[0] + reach - from[0]) / size) + 1.0;
@@ -326,6 +329,7 @@ HorizonMesh addInteractionLayer(const HorizonMesh& mesh, const InteractionLayerO
   {
     for (int k = 0; k < 3; ++k)
     {
+      // The new triangles get the orientation of the input mesh.
       const Index id = t[triangles.flipped ? (3 - k) % 3 : k];
       result.triangles.push_back(id < shared ? layer.boundary[id] : first + id);
     }

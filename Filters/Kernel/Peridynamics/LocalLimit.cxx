@@ -35,6 +35,7 @@ std::vector<Index> freeVertices(
     count = static_cast<Index>(system.functionOf.size());
     return numbers;
   }
+  // With a basis per triangle, a vertex is free if no triangle at it is given.
   std::vector<char> used(numbers.size(), 0), given(numbers.size(), 0);
   const Index perTriangle = basis == PeridynamicBasis::Constant ? 1 : 3;
   for (Index t = 0; t < mesh.numberOfTriangles(); ++t)

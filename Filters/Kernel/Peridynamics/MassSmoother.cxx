@@ -33,6 +33,8 @@ MassSmoother::MassSmoother(
   : Components(system.components)
   , Inverse(inverseDiagonal(system.matrix))
 {
+  // Constant functions have a diagonal mass matrix; with kernels whose form grows for short waves,
+  // the mass matrix does not represent the form.
   if (options.basis == PeridynamicBasis::Constant || formOrder(options) >= 0.0)
   {
     return;
@@ -63,6 +65,7 @@ MassSmoother::MassSmoother(
   this->Scale.resize(rows);
   this->Residual.resize(rows);
   this->Step.resize(rows);
+  // S scales the mass matrix so that it has the diagonal of the stiffness matrix.
   for (std::size_t row = 0; row < rows; ++row)
   {
     this->Scale[row] = 1.0 / std::sqrt(this->Inverse[row] * diagonal[row / this->Components]);
@@ -88,6 +91,8 @@ void MassSmoother::subtractProduct(const std::vector<double>& x, std::vector<dou
       }
       for (int k = 0; k < 3; ++k)
       {
+        // The mass matrix of a linear triangle has area / 12 off the diagonal, and twice as much on
+        // it.
         if (functions[k] >= 0)
         {
           const Index row = c * functions[k] + i;
@@ -110,6 +115,8 @@ void MassSmoother::apply(const double* r, double* z)
     }
     return;
   }
+  // Chebyshev iteration for the eigenvalues from Smallest to Largest (Y. Saad, "Iterative Methods
+  // for Sparse Linear Systems", Section 12.3).
   constexpr double centre = 0.5 * (Largest + Smallest), radius = 0.5 * (Largest - Smallest);
   constexpr double sigma = centre / radius;
   for (std::size_t i = 0; i < rows; ++i)

@@ -100,6 +100,7 @@ Prolongation fromGrid(
   for (int i = 0; i < 2; ++i)
   {
     cells[i] = std::max(1.0, std::ceil((high[i] - low[i]) / spacing));
+    // The lower limit avoids cells of width 0 if all unknowns have the same coordinate.
     size[i] = std::max((high[i] - low[i]) / cells[i], spacing / LeastElements);
   }
   // The four corners of the cell of each function; corners of weight 0 are ignored.
@@ -114,6 +115,7 @@ Prolongation fromGrid(
     for (int i = 0; i < 2; ++i)
     {
       const double at = (places[u][i] - low[i]) / size[i];
+      // A point on the upper side belongs to the last cell.
       from[i] = std::min(std::floor(at), cells[i] - 1.0);
       part[i] = at - from[i];
     }
@@ -287,6 +289,7 @@ SparseMatrix galerkin(const SparseMatrix& matrix, const Prolongation& map,
           scratch.fine.add(matrix.columns[m], transpose.weights[k] * matrix.values[m]);
         }
       }
+      // The list of columns has to be used before take() clears it.
       for (const std::int32_t column : scratch.fine.touched)
       {
         const Index u = column / c;

@@ -106,6 +106,7 @@ std::vector<std::vector<std::int32_t>> colourTriangles(
   const PlanarTriangles& triangles, const FunctionSpace& space, const std::vector<char>& needed)
 {
   std::vector<std::vector<std::int32_t>> colours;
+  // Functions of one triangle are never shared, so a single color suffices.
   if (space.basis != PeridynamicBasis::Linear)
   {
     colours.emplace_back();
@@ -515,6 +516,7 @@ PeridynamicSystem assembledOnRanks(RankGroup& group, const HorizonMesh& mesh,
 {
   PeridynamicSystem system;
   std::unique_ptr<AssemblyParts> parts;
+  // The first rank needs memory for the whole matrix, because it gathers the rows of all ranks.
   const double share = group.rank() == 0 ? 1.0 : 1.0 / group.size();
   checkAssembly(mesh, options, given, share, system);
   parts = std::make_unique<AssemblyParts>(mesh, options);
@@ -561,6 +563,7 @@ PeridynamicSystem assembledOnRanks(RankGroup& group, const HorizonMesh& mesh,
   }
   if (first)
   {
+    // The dilatation term needs all rows, so the first rank adds it after they are gathered.
     if (stateBased)
     {
       control.setRange(StateBasedShare, 1.0);

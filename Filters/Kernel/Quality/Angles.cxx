@@ -88,6 +88,7 @@ void countCorners(const CellTopology& t, const CellVertices& batch, Mask use, An
     subtract(batch.points[n[1]], batch.points[n[0]], a);
     subtract(batch.points[n[2]], batch.points[n[0]], b);
     cross(a, b, own);
+    // At a reflex corner, the normal of the corner is opposite to the area vector.
     counter.add(dot(a, b), dot(a, a) * dot(b, b), use, dot(own, area) < 0.0);
   }
 }
@@ -104,6 +105,7 @@ void countDihedrals(
   for (int e = 0; e < t.edges; ++e)
   {
     const int f = t.edgeFaces[e][0], g = t.edgeFaces[e][1];
+    // The angle between outward normals is 180 degrees minus the dihedral angle, hence the sign.
     counter.add(-dot(normals[f], normals[g]), lengths2[f] * lengths2[g], use, Mask{});
   }
 }
@@ -138,6 +140,7 @@ std::array<Index, angleBins.size() - 1> angleDistribution(
             {
               const int count = static_cast<int>(std::min<Index>(PacketWidth, end - i));
               gather<Nodes>(source, nullptr, i, count, batch, nodes);
+              // With extents near 1, the powers of coordinates cannot overflow.
               normalizeExtents<Nodes>(batch);
               Mask use = {};
               for (int l = 0; l < count; ++l)
@@ -162,6 +165,7 @@ std::array<Index, angleBins.size() - 1> angleDistribution(
     }
   }
   std::array<Index, angleBins.size() - 1> bins{};
+  // The counts are cumulative: their differences are the bins.
   for (int i = 0; i <= InnerEnds; ++i)
   {
     bins[i] = (i == 0 ? total.angles : total.beyond[i - 1]) - (i < InnerEnds ? total.beyond[i] : 0);

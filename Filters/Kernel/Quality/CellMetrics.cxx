@@ -50,7 +50,9 @@ double angleBetween(const Vec3& a, const Vec3& b, Vec3* da, Vec3* db)
     return 0;
   }
   const Vec3 ua = (1 / la) * a, ub = (1 / lb) * b;
+  // The arc tangent is accurate near 0 and 180 degrees, where the arc cosine is not.
   const double sine = norm(cross(ua, ub));
+  // The angle is not differentiable at 0 and 180 degrees.
   if (da && sine > 0)
   {
     *da = (-1 / (la * sine)) * perpendicular(ub, ua);
@@ -75,6 +77,7 @@ struct FaceNormal
   }
   void addGradient(const Vec3& dNormal, Gradient g) const
   {
+    // The derivative of (u x v) . w with respect to u is v x w, and with respect to v it is w x u.
     const Vec3 du = cross(this->v, dNormal), dv = cross(dNormal, this->u);
     g[this->nodes[this->size == 3 ? 1 : 2]] += du;
     g[this->nodes[0]] -= du;
@@ -114,6 +117,7 @@ double size(const Cell& cell, Gradient g)
     return 0.5 * sign * length;
   }
   double volume = 0;
+  // The volume is the sum of the signed tetrahedra from node 0 to the triangles of all faces.
   auto addTriangle = [&](int i, int j, int k, double weight)
   {
     const Vec3 a = p[i] - p[0], b = p[j] - p[0], c = p[k] - p[0];
@@ -168,6 +172,8 @@ double lengthRatio(const Vec3& a, const Vec3& b, Vec3* da, Vec3* db)
 /// Longest over shortest principal axis of a quadrilateral or hexahedron.
 double principalAxisRatio(const Cell& cell, Gradient g)
 {
+  // A principal axis is the sum of the nodes on one side of the cell minus the sum on the opposite
+  // side.
   constexpr int quadSigns[2][4] = { { -1, 1, 1, -1 }, { -1, -1, 1, 1 } };
   constexpr int hexSigns[3][8] = { { -1, 1, 1, -1, -1, 1, 1, -1 }, { -1, -1, 1, 1, -1, -1, 1, 1 },
     { -1, -1, -1, -1, 1, 1, 1, 1 } };
@@ -229,6 +235,7 @@ double aspectRatio(const Cell& cell, Gradient g)
   const double q = scale * length * perimeter / std::abs(signedSize);
   if (g)
   {
+    // Logarithmic derivatives: each factor of q contributes q times its derivative over its value.
     for (int k = 0; k < t.nodes; ++k)
     {
       g[k] += (-q / signedSize) * dSize[k];
@@ -269,6 +276,7 @@ double widthRatio(const Cell& cell, Gradient g)
     }
     const Vec3 u = (1 / length) * e, n = (1 / area) * cross(e, d);
     const double foot = dot(u, d), height = area / length;
+    // The rectangle is longer than the edge if the foot of the apex lies outside.
     const double low = std::min(0.0, foot), high = std::max(length, foot);
     const double width = high - low;
     const double q = std::max(width / height, height / width);
@@ -278,6 +286,7 @@ double widthRatio(const Cell& cell, Gradient g)
     }
     best = q;
     bestCorner = i;
+    // Derivatives with respect to the edge e and to the vector d to the apex.
     const Vec3 dFootE = (1 / length) * (d - foot * u), dFootD = u;
     Vec3 dWidthE = high == length ? u : dFootE, dWidthD = high == length ? Vec3{ 0, 0, 0 } : dFootD;
     if (low < 0)
@@ -374,6 +383,7 @@ double smallestOfCorners(const Cell& cell, Gradient g)
     g[nodes[1]] += da;
     g[nodes[2]] += db;
     g[nodes[0]] -= da + db;
+    // On a surface, the normal itself depends on the points.
     if (!cell.planar)
     {
       face.addGradient((1 / length) * perpendicular(cross(a, b), normal), g);

@@ -48,6 +48,8 @@ Packet combine(
     }
     case Combination::PowerMean:
     {
+      // A negative power emphasizes the smallest corner, which is the worst if larger values are
+      // better.
       const double p = context.largerIsBetter ? -context.options->power : context.options->power;
       // In units of the worst value, so that high powers do not overflow.
       Packet unit = broadcast(context.largerIsBetter ? HUGE_VAL : 0.0), sum = {}, sign = {};
@@ -64,6 +66,7 @@ Packet combine(
       }
       const Packet mean = unit * pow(sum / count, 1.0 / p);
       result = finiteOrZero(signOf(sign) * mean);
+      // The derivative of the power mean is (|q_s| / mean)^(p - 1) / count, with the signs of both.
       for (int s = 0; s < samples; ++s)
       {
         weights[s] = finiteOrZero(

@@ -88,6 +88,7 @@ void compareMetric(const MetricInfo& info, int dimension, const CellValues& befo
       return is > was ? 1 : -1;
     }
     const double low = before.values[i], high = after.values[i];
+    // Inverted elements can only be compared by metrics that increase with the degree of inversion.
     const bool ordered = is == Valid || (is == Inverted && info.inverted == InvertedValue::Larger);
     const double magnitude = std::max({ std::abs(low), std::abs(high), smallest });
     return !ordered || std::abs(high - low) <= tolerance * magnitude ? 0

@@ -172,6 +172,7 @@ void parseTypes(
     }
     criterion.limits[type] = limits;
   }
+  // Limits for "all" apply to the types without their own.
   for (int type = 0; type < NumberOfGradedTypes; ++type)
   {
     auto& limits = criterion.limits[type];
@@ -193,6 +194,7 @@ bool findCheck(const std::string& name, int& number, MetricInfo& info)
     return false;
   }
   number = static_cast<int>(found - checks.begin());
+  // The fields that the parsers of limits and types use.
   info.name = found->name;
   info.direction = found->direction;
   info.family = MetricFamily::Cell;
@@ -402,6 +404,7 @@ double penaltyOf(const QualityLimits& limits, double value)
   {
     return penalties.back();
   }
+  // The penalty is piecewise linear between the limits, searched from the worst.
   for (std::size_t i = at.size() - 1; i-- > 0;)
   {
     if (sign * value >= sign * at[i])
@@ -443,6 +446,7 @@ void gradeCells(const QualityCriteria& criteria, const Mesh& mesh, const signed 
       continue;
     }
     const bool valid = validity[cell] == Valid;
+    // Cells that do not count are still graded, but the totals omit them.
     const bool counts = !uncounted || !uncounted[cell];
     Grade grade = Grade::None;
     double penalty = 0, weights = 0;
@@ -453,6 +457,7 @@ void gradeCells(const QualityCriteria& criteria, const Mesh& mesh, const signed 
       {
         continue;
       }
+      // An invalid element fails at any value; finite volumes have no invalid elements.
       if (!valid && !ofFaces)
       {
         grade = Grade::Failed;
@@ -479,6 +484,7 @@ void gradeCells(const QualityCriteria& criteria, const Mesh& mesh, const signed 
       continue;
     }
     grades[cell] = static_cast<signed char>(grade);
+    // An invalid element has the largest penalty.
     indices[cell] = !valid && !ofFaces ? 1.0 : weights > 0 ? penalty / weights : 0.0;
     if (!counts)
     {

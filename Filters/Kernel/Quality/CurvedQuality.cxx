@@ -65,11 +65,13 @@ public:
   void add(const std::array<Vec3, 3>& columns)
   {
     Vec3 t[3];
+    // T = A W^-1, column by column, with the ideal element W.
     for (int c = 0; c < 3; ++c)
     {
       t[c] = this->Inverse[0][c] * columns[0] + this->Inverse[1][c] * columns[1] +
         this->Inverse[2][c] * columns[2];
     }
+    // Corner k of the sample simplex is T w_k, with corner w_k of the ideal simplex.
     for (int k = 0; k < this->Corners; ++k)
     {
       const Vec3 w = idealCorner(this->Flat, k);
@@ -111,6 +113,7 @@ public:
     Mesh samples(view, 1);
     samples.setSpace(this->Space);
     samples.setMirrored(mirrored);
+    // The samples of one chunk are evaluated inside a parallel loop.
     EvaluationOptions one = options;
     one.threads = 1;
     evaluateMetric(samples, metric, one, values.data());
@@ -132,6 +135,7 @@ double combine(const EvaluationOptions& options, bool largerIsBetter, bool onlyN
   const std::vector<double>& weights, const double* values, const double* determinants)
 {
   const std::size_t count = weights.size();
+  // As with corners, only inverted samples count in an element that has any.
   const bool some =
     onlyNegative && std::any_of(determinants, determinants + count, [](double d) { return d < 0; });
   const double power = largerIsBetter ? -options.power : options.power;
@@ -255,6 +259,7 @@ void CurvedQuality::bound(
   forEachChunk(block.count(), this->Threads,
     [&](Index, Index begin, Index end)
     {
+      // A certifier is for one orientation, so mirrored cells form a group of their own.
       for (bool mirrored : { false, true })
       {
         const std::vector<Index> positions = block.positions(begin, end, mirrored);
@@ -267,6 +272,7 @@ void CurvedQuality::bound(
         {
           const Index cell = block.cells[i];
           double value = 0;
+          // The value where the determinant is smallest represents an inverted element.
           if (validity[cell] == Inverted)
           {
             value = certifier.valueAt(points, block.nodes[i], this->Minima[cell].at);
@@ -291,6 +297,8 @@ void CurvedQuality::measureSizes(const CurvedBlock& block, double* values) const
 {
   const double* points = this->TheMesh.view().points;
   const double reference = referenceSizeOf(block.type->shape());
+  // The mean of a polynomial determinant follows exactly from its coefficients; on pyramids and on
+  // surfaces in space it is not a polynomial.
   const bool byCoefficients = block.type->shape() != ElementShape::Pyramid &&
     (block.type->dimension() == 3 || norm(block.normal) > 0);
   const ElementSamples samples(*block.type, quadratureOf(*block.type));
@@ -353,19 +361,23 @@ void CurvedQuality::sample(const CurvedBlock& block, const MetricInfo& info,
             // Add the position of the smallest determinant, which the samples may have missed.
             const Vec3& at = this->Minima[block.cells[i]].at;
             simplices.add(samples.columnsAt(at, points, block.nodes[i]));
+            // Any negative number: only the sign is used.
             all.push_back(-1);
           }
         }
+        // All samples of a chunk form one mesh, so that they fill the packets.
         const std::vector<double> found = simplices.evaluate(info.metric, options, mirrored);
         std::size_t at = 0;
         for (Index i : positions)
         {
           const Index cell = block.cells[i];
           std::vector<double> weights = samples.rule().weights;
+          // The added position has the weight of an average sample.
           if (validity[cell] == Inverted)
           {
             weights.push_back(1.0 / count);
           }
+          // A metric with a barrier has no value on a degenerate element.
           const bool vanishes = info.barrier && validity[cell] == Degenerate;
           const double value =
             combine(options, larger, onlyNegative, weights, found.data() + at, all.data() + at);
@@ -431,6 +443,7 @@ MissedCells CurvedQuality::missed(const signed char* validity, const unsigned ch
           points, block.nodes[i], block.normal, block.mirrored[i] != 0, values.data());
         return std::all_of(values.begin(), values.end(), [](double d) { return d > 0; });
       };
+      // A check at only these points would miss the element.
       missed.atCorners += positive(corners);
       missed.atIntegrationPoints += positive(usual);
     }

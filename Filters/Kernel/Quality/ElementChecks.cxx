@@ -51,6 +51,7 @@ std::vector<Edge> edgesWithMiddle(const ElementType& type)
   std::vector<Vec3> places = type.coordinates();
   for (Vec3& p : places)
   {
+    // In a pyramid, the collapse scales the first two coordinates by 1 - z.
     const double h = type.shape() == ElementShape::Pyramid ? 1 - p[2] : 1;
     p = { p[0] * h, p[1] * h, p[2] };
   }
@@ -92,6 +93,7 @@ double edgeValue(int check, const Vec3& a, const Vec3& b, const Vec3& m)
     case NormalOffset:
       return norm(first - (dot(first, chord) / (length * length)) * chord) / length;
     case MidnodeAngle:
+      // The arc tangent is accurate for all angles; the arc cosine is not near 0 and 180 degrees.
       return std::atan2(norm(cross(first, second)), dot(first, second)) * 180 / Pi;
     case MidnodeRatio:
       return std::min(norm(first), norm(second)) / std::max(norm(first), norm(second));
@@ -113,6 +115,7 @@ ElementRule ansysPlaces(const ElementType& type)
   ElementRule rule = cornersOf(type);
   const bool middle = *std::max_element(type.orders().begin(), type.orders().end()) > 1;
   const Vec3 centroid = { 0.5, 0.5, type.dimension() == 3 ? 0.5 : 0 };
+  // At the apex itself, the map of the collapsed coordinates is singular.
   constexpr double nearApex = 0.99;
   switch (type.shape())
   {
@@ -183,12 +186,15 @@ double certifiedRatio(const CurvedBlock& block, Index i, const double* points,
 {
   MinimumTolerance tolerance;
   tolerance.relative = 1e-6;
+  // The upper bound is a value that the determinant attains.
   const double least = certifier.minimum(points, block.nodes[i], tolerance).upper;
   const bool surface = block.type->dimension() == 2 && norm(block.normal) == 0;
   if (!surface)
   {
+    // The largest determinant is minus the smallest one of the mirrored element.
     return ratioOf(least, -opposite.minimum(points, block.nodes[i], tolerance).upper);
   }
+  // On a surface in space the determinant is a norm, whose maximum is only sampled.
   std::vector<double> values(samples.count());
   samples.determinants(points, block.nodes[i], block.normal, false, values.data());
   return ratioOf(least, std::max(least, *std::max_element(values.begin(), values.end())));
@@ -211,6 +217,7 @@ CellValue valueOf(const CurvedBlock& block, int check, const double* points,
   {
     return [=, &block, &edges](Index i)
     {
+      // The value of a straight edge with its node in the middle.
       double worst = check == MidnodeRatio || check == MidnodeChord ? 1 : 0;
       for (const Edge& edge : edges)
       {

@@ -24,6 +24,7 @@ std::uint64_t mortonCode(const Vec3& p, const Vec3& low, double scale)
   for (int c = 0; c < 3; ++c)
   {
     std::uint64_t x = static_cast<std::uint64_t>(std::max(0.0, (p[c] - low[c]) * scale)) & 0x1fffff;
+    // Spreads the bits so that two zeros follow each, by shifts that double the number of groups.
     x = (x | x << 32) & 0x1f00000000ffff;
     x = (x | x << 16) & 0x1f0000ff0000ff;
     x = (x | x << 8) & 0x100f00f00f00f00f;
@@ -51,12 +52,14 @@ std::vector<Index> spatialOrder(const Mesh& mesh, const CellBlock& block)
       }
       else
       {
+        // A cell without a finite center may be anywhere on the curve.
         centers[i][c] = 0;
       }
     }
   }
   const Vec3 extent = high - low;
   const double longest = std::max({ extent[0], extent[1], extent[2] });
+  // The longest extent uses all 21 bits.
   const double most = longest > 0 ? 0x1fffff / longest : 0.0;
   const double scale = std::isfinite(most) ? most : 0.0;
   std::vector<std::pair<std::uint64_t, Index>> keys(block.count);
@@ -165,6 +168,7 @@ ElementSum::ElementSum(const Mesh& mesh, Metric metric, const EvaluationOptions&
       throw Error("A vertex is shared by cells of more than " + std::to_string(MaxColours) +
         " chunks: the mesh has a vertex with an extreme number of cells.");
     }
+    // Within a color, chunks keep their order, so that sums are reproducible.
     std::stable_sort(coloured.begin(), coloured.end(),
       [](const auto& a, const auto& b) { return a.first < b.first; });
     this->ColourStarts.assign(1, 0);
@@ -192,6 +196,7 @@ void ElementSum::pack()
   }
   const bool reordered = std::any_of(this->Order.begin(), this->Order.end(),
     [](const std::vector<Index>& order) { return !order.empty(); });
+  // Points numbered in the order of the cells make the memory accesses of reordered cells local.
   const bool renumber = reordered && view.numberOfPoints > FewPoints;
   std::vector<std::int32_t> place(renumber ? view.numberOfPoints : 0, -1);
   const auto& blocks = this->TheMesh.blocks();
@@ -213,6 +218,7 @@ void ElementSum::pack()
       const Index* node = view.connectivity + view.offsets[cell];
       for (int k = 0; k < nodes; ++k)
       {
+        // Points are numbered in the order of their first use.
         if (renumber && place[node[k]] < 0)
         {
           place[node[k]] = static_cast<std::int32_t>(this->PackedPoints.size());
@@ -275,6 +281,7 @@ void raise(Packet q, double power, Packet& value, Packet& slope)
   else
   {
     const Packet size = abs(q);
+    // The slope p |q|^(p - 1) also gives the value, which saves a second power.
     slope = select(size > 0.0, power * pow(size, power - 1.0), Packet{});
     value = q * slope * (1.0 / power);
   }

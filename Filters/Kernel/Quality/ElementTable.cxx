@@ -20,6 +20,7 @@ Vec3 asSeen(const Mesh& mesh, const CellTopology& t, Vec3 p)
   if (t.dimension == 2 && mesh.dimension() == Dimension::Planar)
   {
     const auto& frame = mesh.frame();
+    // Exchanging both axes mirrors the plane.
     return { dot(frame[mesh.mirrored() ? 1 : 0], p), dot(frame[mesh.mirrored() ? 0 : 1], p), 0 };
   }
   if (mesh.mirrored() && mesh.dimension() == Dimension::Volume)
@@ -100,6 +101,7 @@ public:
       std::copy(kept[i].begin(), kept[i].end(), this->corner(i, k));
       const double h = fraction * this->Extents[i];
       const double forth = found[i];
+      // If only one of both sides has a finite value, the difference is one-sided.
       found[i] = std::isfinite(forth) && std::isfinite(back[i]) ? (forth - back[i]) / (2 * h)
         : std::isfinite(forth)                                  ? (forth - here[i]) / h
                                                                 : (here[i] - back[i]) / h;

@@ -167,6 +167,7 @@ Index countBeyond(const BatchContext& context, const MetricInfo& info, const Bat
       continue;
     }
     const Validity validity = context.mesh->classifyCell(*context.topology, p);
+    // For these metrics, 0 is the correct value of a valid element but not of an inverted one.
     const bool zero = value[l] == 0 && measured[l] == 0;
     count += zero ? validity == Inverted : validity == Valid || validity == Inverted;
   }
@@ -178,6 +179,7 @@ Index evaluateAll(const Mesh& mesh, Metric metric, const EvaluationOptions& opti
   double* gradients, double undefined = 0.0)
 {
   checkEvaluation(mesh, metricInfo(metric), options);
+  // A metric without derivatives is evaluated on all elements at once.
   if (const UserMetric* user = metricInfo(metric).user; user && !user->hasDerivatives())
   {
     if (gradients)
@@ -233,6 +235,7 @@ Index evaluateAll(const Mesh& mesh, Metric metric, const EvaluationOptions& opti
               evaluate(context, batch);
               const Packet measured = batch.value;
               batch.value = timesUnit(batch, measured, context.lengthPower);
+              // Values of scale-invariant metrics do not depend on the unit, so they stay in range.
               if (!info.scaleInvariant)
               {
                 beyond += countBeyond(context, info, batch, measured, nodes, ordinary);
@@ -270,6 +273,7 @@ void evaluateJudged(
 {
   const MetricInfo& info = metricInfo(metric);
   constexpr double infinity = std::numeric_limits<double>::infinity();
+  // Without a value, an element must not pass as a good one.
   const double worst = info.direction == Direction::LargerIsBetter ? -infinity : infinity;
   evaluateAll(mesh, metric, options, values, nullptr, info.user ? worst : 0.0);
 }

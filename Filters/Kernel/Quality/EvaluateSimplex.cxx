@@ -46,6 +46,7 @@ inline __attribute__((always_inline)) void setGradient(const CellTopology& topol
   for (int e = 0; e < d.edges; ++e)
   {
     const int i = topology.edgeNodes[e][0], j = topology.edgeNodes[e][1];
+    // The derivative of a squared length is twice the edge vector.
     const Packet factor = select(degenerate, Packet{}, 2.0 * d.edge2[e]);
     for (int c = 0; c < 3; ++c)
     {
@@ -63,6 +64,7 @@ inline __attribute__((always_inline)) void setGradient(const CellTopology& topol
   {
     for (int f = 0; f < 4; ++f)
     {
+      // The squared area is |n|^2 / 4, and its derivative is half of n times the derivative of n.
       addNormalGradient(select(degenerate, Packet{}, 0.5 * d.face2[f]), faceNormal[f],
         oppositeFace[f][0], oppositeFace[f][1], oppositeFace[f][2], batch);
     }
@@ -98,6 +100,7 @@ void evaluateSimplex(const BatchContext& context, Batch& batch)
   subtract(batch.points[1], batch.points[0], edges[0]);
   subtract(batch.points[2], batch.points[0], edges[1]);
   cross(edges[0], edges[1], normal);
+  // Degeneracy is relative to the product of the lengths of the edges at point 0.
   Packet lengths2 = s.edge2[0] * s.edge2[2], jacobian2;
   if constexpr (N == 2)
   {
@@ -105,6 +108,7 @@ void evaluateSimplex(const BatchContext& context, Batch& batch)
     // along its own normal.
     jacobian2 = dot(normal, normal);
     const Packet length = sqrt(jacobian2);
+    // A triangle without area gets a zero normal instead of NaN.
     const Packet over = select(length > 0.0, 1.0 / length, Packet{});
     const bool planar = context.mesh->dimension() == Dimension::Planar;
     for (int c = 0; c < 3; ++c)
@@ -132,6 +136,7 @@ void evaluateSimplex(const BatchContext& context, Batch& batch)
       s.face2[f] = 0.25 * dot(faceNormal[f], faceNormal[f]);
     }
   }
+  // Both sides have the same power of a length: the test is independent of the scale.
   const double tolerance = Mesh::degenerateTolerance() * Mesh::degenerateTolerance();
   const Mask degenerate = jacobian2 <= tolerance * lengths2;
   batch.value = select(degenerate, Packet{}, M::template evaluate<N>(s, d));

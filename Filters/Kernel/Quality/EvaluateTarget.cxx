@@ -24,6 +24,8 @@ template <class M, int N>
 void addGradient(const BatchContext& context, const Corner<N>& corner, int sample,
   const TargetInvariants<N>& d, Packet weight, Batch& batch)
 {
+  // dq/dT = 2 q_n T + q_d cof T + q_t I, from the derivatives by |T|^2, det T and tr T; the
+  // adjugate is added below.
   Packet p[N][N]; // dq/dT
   for (int r = 0; r < N; ++r)
   {
@@ -87,6 +89,7 @@ void addGradient(const BatchContext& context, const Corner<N>& corner, int sampl
       entry *= weight;
       if constexpr (N == 2)
       {
+        // In 2D, a row of T refers to an axis in the plane of the cell.
         for (int c = 0; c < 3; ++c)
         {
           column[c] += entry * corner.axes[r][c];
@@ -182,6 +185,7 @@ Packet evaluateMoving(const BatchContext& context, const Batch& batch, int sampl
   }
   for (int c = 0; c < 3; ++c)
   {
+    // The modulo avoids an access beyond the end for N = 2.
     slope[c] =
       N == 2 ? Packet(corner.axes[0][c] * byRow[0] + corner.axes[1][c] * byRow[1]) : byRow[c % N];
     slope[c] = M::singular ? select(corner.degenerate, Packet{}, slope[c]) : slope[c];
@@ -267,6 +271,7 @@ void evaluateRegular(const BatchContext& context, Batch& batch)
   {
     cross(p[1], p[2], cofactor[0]);
     cross(p[2], p[0], cofactor[1]);
+    // The derivative of |T|^2 by p_k is 4 p_k - sum p; the derivative of det A is the cofactor.
     const Packet byDet = sqrt2 * d.det, byPoint = points * d.norm2;
     for (int c = 0; c < 3; ++c)
     {
@@ -291,6 +296,7 @@ __attribute__((flatten)) void evaluateTarget(const BatchContext& context, Batch&
   const int samples = topology.samples;
   if constexpr (N == 3 && ofNormAndDeterminant<M>)
   {
+    // In a scaled batch, T would be in units of the cell, which only scale-invariant metrics allow.
     if (samples == 1 && !context.options->targets && (!batch.scaled || context.scaleInvariant))
     {
       evaluateRegular<M, WithGradient>(context, batch);
@@ -340,6 +346,8 @@ __attribute__((flatten)) void evaluateTarget(const BatchContext& context, Batch&
   {
     TargetInvariants<N> d;
     evaluateCorner<M, N>(context, batch, s, own, corner);
+    // A user formula yields its derivatives in this pass; the other metrics compute them in the
+    // second one.
     q[s] = evaluateFormula < M, N, WithGradient && M::user > (context, corner, d);
     std::copy_n(&corner.slope[0][0], M::user && WithGradient ? N * N : 0, &slopes[s % kept][0][0]);
     negative[s] = (corner.invariants.det < 0.0) & ~corner.degenerate;
@@ -363,6 +371,8 @@ __attribute__((flatten)) void evaluateTarget(const BatchContext& context, Batch&
   batch.value = select(zero, Packet{}, batch.value);
   if constexpr (WithGradient)
   {
+    // The weights of the corners are only known now; evaluating a corner twice is cheaper than
+    // storing its matrices.
     for (int s = 0; s < samples; ++s)
     {
       TargetInvariants<N> d;

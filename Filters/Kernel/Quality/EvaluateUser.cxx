@@ -52,6 +52,7 @@ void evaluateCorners(const BatchContext& context, Batch& batch)
       axes[a][c] = broadcast(axis[c]);
     }
   }
+  // User metrics expect mesh coordinates instead of the normalized ones of the batch.
   const Packet unit = batch.scaled ? batch.unit : broadcast(1.0);
   Packet points[Nodes][3], slopes[Nodes][3];
   loadCorners<Nodes>(batch, planar ? axes : nullptr, unit, points);

@@ -120,6 +120,8 @@ void edgeRatio(const BatchContext& context, Batch& batch)
   if constexpr (WithGradient)
   {
     clearGradient(t.nodes, batch);
+    // With longest and shortest edge a and b, the derivatives of |a| / |b| are a / (|a| |b|) and -q
+    // b / |b|^2.
     const Packet byLongest = select(good, 1.0 / (longestLength * shortestLength), Packet{});
     const Packet byShortest = select(good, -batch.value / least, Packet{});
     for (int c = 0; c < 3; ++c)
@@ -191,6 +193,8 @@ void scaledJacobian(const BatchContext& context, Batch& batch)
     Packet d[3][3];
     for (int k = 0; k < t.dimension; ++k)
     {
+      // The value is s e_0 . (e_1 x e_2) with the reciprocal product of lengths s: its derivative
+      // by an edge is s times the cross product of the others, minus q e / |e|^2.
       const Packet length2 = dot(edges[k], edges[k]);
       const Packet along = select(length2 > 0.0, batch.value / length2, Packet{});
       cross(edges[(k + 1) % 3], edges[(k + 2) % 3], d[k]);
@@ -303,6 +307,7 @@ void extremalDihedral(const BatchContext& context, Batch& batch)
   {
     const int first = t.edgeFaces[e][0], second = t.edgeFaces[e][1];
     Angles angles;
+    // The inner angle is between one outward normal and the reversed other one.
     for (int c = 0; c < 3; ++c)
     {
       angles.a[c] = unit[first][c];
@@ -325,6 +330,7 @@ void extremalDihedral(const BatchContext& context, Batch& batch)
     for (int e = 0; e < t.edges; ++e)
     {
       const Mask here = at == static_cast<double>(e);
+      // b is the reversed normal of the second face, hence the sign.
       for (int c = 0; c < 3; ++c)
       {
         byNormal[t.edgeFaces[e][0]][c] += select(here, da[c], Packet{});
@@ -355,6 +361,7 @@ void extremalCorner(const BatchContext& context, Batch& batch)
     subtract(batch.points[nodes[1]], batch.points[nodes[0]], angles.a);
     subtract(batch.points[nodes[2]], batch.points[nodes[0]], angles.b);
     cross(angles.a, angles.b, normal);
+    // Only quadrilaterals can have reflex corners; on triangles, the comparison would be rounding.
     const Mask reflex = t.nodes == 4 ? dot(normal, face.normal) < 0.0 : Mask{};
     angles.lengthA = normalize(angles.a);
     angles.lengthB = normalize(angles.b);
@@ -374,6 +381,8 @@ void extremalCorner(const BatchContext& context, Batch& batch)
   {
     clearGradient(t.nodes, batch);
     Packet da[3], db[3];
+    // A reflex angle is 360 degrees minus the angle between the edges, so its derivatives change
+    // their sign.
     best.derivatives(DegreesPerRadian * turn, da, db);
     for (int corner = 0; corner < t.corners; ++corner)
     {

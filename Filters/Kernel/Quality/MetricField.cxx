@@ -25,6 +25,7 @@ double sizeOfBase(const Vec3& a, const Vec3& b, bool flat)
     return 0.0;
   }
   Vec3 u, v;
+  // Scaling by a power of two is exact.
   for (int c = 0; c < 3; ++c)
   {
     u[c] = std::ldexp(a[c], -std::ilogb(extent));
@@ -46,6 +47,7 @@ MetricField::MetricField(CellType type, const std::array<Vec3, 3>& fixed)
     throw Error("A metric field requires a triangle or a tetrahedron.");
   }
   const bool flat = type == CellType::Triangle;
+  // Relative to the first vertex, coordinates far from the origin keep their precision.
   for (Vec3& p : this->Fixed)
   {
     p = p - this->Origin;
@@ -70,6 +72,7 @@ void MetricField::forEachSlice(const FieldGrid& grid, int threads, const Visit& 
   {
     return;
   }
+  // The last vertex of each cell is the free one.
   const int fixed = topology(this->Type).nodes - 1;
   std::vector<double> points(3 * (cells + fixed));
   std::vector<unsigned char> types(cells, static_cast<unsigned char>(this->Type));

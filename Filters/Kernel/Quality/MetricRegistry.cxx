@@ -64,6 +64,7 @@ std::vector<MetricInfo> makeRegistry()
   const double root3 = std::sqrt(3.0);
   const double si2 = root3 / 12, si3 = 2 * std::sqrt(2.0) * std::sqrt(root3) / 9;
   const double ss2 = root3 / 4, ss3 = std::sqrt(2.0) / 12 * std::pow(root3 / 1.125, 0.75);
+  // The dihedral angle of the regular tetrahedron, 70.5 degrees.
   const double dihedral = std::acos(1.0 / 3.0) * 180 / Pi;
   const Range any = atLeast(0), one = atLeast(1), shape = { 0, 2 }, ratio = { 1, 3 };
   const Range unit = { 0, 1 };
@@ -353,10 +354,12 @@ const MetricInfo& metricInfo(Metric metric)
 {
   const auto& builtIn = builtInMetrics();
   const int number = static_cast<int>(metric);
+  // The built-in metrics are listed in the order of the enumeration.
   if (number >= 0 && number < static_cast<int>(builtIn.size()))
   {
     return builtIn[number];
   }
+  // The number may belong to a library of the environment that has not been loaded yet.
   loadMetricsOfEnvironment();
   if (const MetricInfo* info = registeredMetric(metric))
   {
@@ -388,6 +391,7 @@ const MetricInfo* findMetric(const std::string& name)
         return &info;
       }
     }
+    // Commas on both sides prevent matches with a part of an alias.
     const std::string aliases = std::string(",") + info.aliases + ",";
     if (!wanted.empty() && wanted.find(',') == std::string::npos &&
       aliases.find("," + wanted + ",") != std::string::npos)

@@ -69,6 +69,7 @@ void publish(Registry& all)
       all.lists.back().push_back(r.info);
     }
   }
+  // Readers see the new list only after it is complete.
   all.current = &all.lists.back();
 }
 
@@ -88,6 +89,7 @@ void completeDescription(MetricDescription& d)
   for (const std::string* text :
     { &d.label, &d.symbol, &d.aliases, &d.formula, &d.source, &d.unit })
   {
+    // The list of metrics for other processes separates texts with tabs and line ends.
     if (std::any_of(text->begin(), text->end(), [](unsigned char c) { return c < ' '; }))
     {
       throw Error("The texts of the metric " + d.name +
@@ -174,6 +176,7 @@ void requireFree(const MetricDescription& d)
   for (const std::string& name : names)
   {
     const MetricInfo* other = findMetric(name);
+    // A metric that is known only from another process may be replaced by its registration here.
     if (other && !(isMirrored(*other) && other->name == d.name))
     {
       throw Error("The metric " + d.name + " cannot be registered: there already is a metric '" +
@@ -204,6 +207,7 @@ const MetricInfo* registeredMetric(Metric metric)
   // A removed metric may still be in use.
   Registry& all = registry();
   const std::lock_guard<std::mutex> lock(all.mutex);
+  // The latest registration with a number counts.
   for (auto r = all.metrics.rbegin(); r != all.metrics.rend(); ++r)
   {
     if (r->info.metric == metric)
@@ -272,6 +276,7 @@ Metric registerMetric(
   completeDescription(complete);
   requireFree(complete);
   complete.cellTypes = typesOf(complete);
+  // The test calls code of the user, so the registry is not locked yet.
   tryMetric(complete, *metric);
 
   Registry& all = registry();
@@ -279,6 +284,7 @@ Metric registerMetric(
   const Metric number = static_cast<Metric>(numberOf(complete.name));
   for (Registered& r : all.metrics)
   {
+    // A mirrored metric of the same name makes way for this one.
     r.listed = r.listed && !(!r.mirrored.empty() && r.description.name == complete.name);
     if (r.listed && r.info.metric == number)
     {
@@ -314,6 +320,7 @@ void mirrorMetric(MetricDescription description, MetricArgument argument, const 
   {
     if (r.listed && r.info.metric == number)
     {
+      // A metric of this process takes precedence, and unchanged facts need no new entry.
       if (r.mirrored.empty() || r.mirrored == facts)
       {
         return;
@@ -389,6 +396,8 @@ void loadMetrics(const std::string& library)
     throw Error("The library of metrics " + library +
       " cannot be loaded: " + (reason ? reason : "unknown reason") + ".");
   }
+  // Registrations run inside dlopen() and cannot throw, so they have appended their errors to a
+  // text.
   Registry& all = registry();
   std::string errors;
   {
@@ -416,6 +425,7 @@ void loadMetricsOfEnvironment()
   std::istringstream list(libraries ? libraries : "");
   for (std::string library; std::getline(list, library, ':');)
   {
+    // An error in one library does not affect the others.
     try
     {
       if (!library.empty())

@@ -58,6 +58,7 @@ public:
     const Index last = static_cast<Index>(values.size()) - 1;
     for (double p : positions)
     {
+      // Interpolation also needs the value at the next position.
       for (Index place : { static_cast<Index>(p), std::min(static_cast<Index>(p) + 1, last) })
       {
         signed char& slot = this->SlotOf[this->bucketAt(place)];
@@ -100,6 +101,8 @@ private:
     std::uint64_t key;
     v += 0.0; // no negative zero
     std::memcpy(&key, &v, sizeof(key));
+    // With all bits of negative numbers and the sign bit of the others inverted, integers have the
+    // order of the values.
     key = key & signBit ? ~key : key | signBit;
     return key >> (64 - Bits);
   }
@@ -192,6 +195,7 @@ std::vector<WorstElement> worstElements(const MetricInfo& info, const CellValues
       std::push_heap(heap.begin(), heap.end(), worse);
     }
   }
+  // In the order of `worse`, the worst element is the first.
   std::sort_heap(heap.begin(), heap.end(), worse);
   return heap;
 }
@@ -200,6 +204,7 @@ std::vector<WorstElement> worstElements(const MetricInfo& info, const CellValues
 double worstValue(const MetricInfo& info, const MetricStatistics& statistics,
   const std::vector<WorstElement>& worst)
 {
+  // Depending on the metric, the value of an inverted element is not an extreme one.
   if (statistics.measured > 0 && !worst.empty() && worst.front().validity == Inverted)
   {
     return worst.front().value;
@@ -250,6 +255,7 @@ MetricStatistics summarize(
 #pragma omp simd reduction(+ : sum, squares)
   for (Index i = 0; i < count; ++i)
   {
+    // Relative to the first value, the sum stays accurate for nearly equal values.
     const double scaled = values[i] * scale;
     sum += scaled - first;
     squares += scaled * scaled;
@@ -277,6 +283,7 @@ MetricStatistics summarize(
   const OrderStatistics sorted(measured, position);
   for (std::size_t i = 0; i < position.size(); ++i)
   {
+    // Linear interpolation between order statistics (type 7 of Hyndman and Fan).
     const double fraction = position[i] - std::floor(position[i]);
     const double below = sorted.at(static_cast<Index>(position[i]));
     const double above = fraction > 0 ? sorted.at(static_cast<Index>(position[i]) + 1) : below;
@@ -311,6 +318,7 @@ Histogram emptyBins(const Range& range, int bins)
   for (int i = 0; i <= bins; ++i)
   {
     const double fraction = static_cast<double>(i) / bins;
+    // This form does not overflow if the range covers most numbers.
     result.edges[i] = (1 - fraction) * range.low + fraction * range.high;
   }
   return result;
@@ -321,6 +329,7 @@ void count(Histogram& result, double value)
 {
   const auto bins = static_cast<double>(result.counts.size());
   const double low = result.edges.front(), high = result.edges.back();
+  // The ends are divided first, because their difference may overflow.
   const double width = high / bins - low / bins;
   const double position = width > 0 ? (value - low) / width : 0.0;
   ++result.counts[static_cast<Index>(std::clamp(position, 0.0, bins - 1))];
@@ -348,6 +357,7 @@ AcceptableHistogram acceptableHistogram(
   {
     range = values;
   }
+  // A range that is open on one side ends at the data.
   range.low = std::isfinite(range.low) ? range.low : std::min(values.low, range.high);
   range.high = std::isfinite(range.high) ? range.high : std::max(values.high, range.low);
   AcceptableHistogram result;

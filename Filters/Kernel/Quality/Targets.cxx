@@ -128,6 +128,7 @@ Targets referenceTargets(const Mesh& mesh, const Mesh& reference)
       }
       if (t.dimension == 3)
       {
+        // A mirrored mesh is evaluated with x reversed.
         const double mirror = reference.mirrored() ? -1.0 : 1.0;
         for (int k = 0; k < 3; ++k)
         {
@@ -183,6 +184,7 @@ Targets sizeTargets(const Mesh& mesh, const double* sizes)
       const double ideal = t.sizePerDeterminant / inverse.determinant();
       const double factor = std::pow(ideal / sizes[cell], 1.0 / t.dimension);
       Matrix scaled = factor * inverse;
+      // The third column is the unit normal, which is not scaled.
       if (t.dimension == 2)
       {
         scaled(2, 2) = 1;
@@ -205,6 +207,8 @@ void scaleTargets(Targets& targets, double unit)
 Targets tensorTargets(const Mesh& mesh, const double* tensors)
 {
   using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+  // The target is the ideal element; the metric is applied to the Jacobian from the left, by its
+  // root.
   Targets targets =
     makeTargets(mesh, [](Index, int s, const CellTopology& t) { return idealInverse(t, s); });
   targets.metricRoots.assign(9 * mesh.view().numberOfCells, 0.0);
@@ -250,6 +254,7 @@ Targets tensorTargets(const Mesh& mesh, const double* tensors)
       {
         refuse(cell, "its metric tensor is not positive definite.");
       }
+      // Lengths in the metric M are the lengths of the vectors M^(1/2) e.
       Matrix root = solver.operatorSqrt();
       if (mesh.mirrored() && dimension == 3)
       {

@@ -54,6 +54,7 @@ std::vector<double> cellsNear(CellType type)
       corners.push_back(corners[k] + Vec3{ 0, 0, 1 });
     }
   }
+  // VTK's wedge is numbered the other way around: cells with a negative corner are reflected in z.
   const auto& first = t.cornerNodes[0];
   const Vec3 a = corners[first[1]] - corners[first[0]], b = corners[first[2]] - corners[first[0]];
   const bool mirrored =
@@ -142,6 +143,7 @@ public:
     }
     if (this->Description.scaleInvariant)
     {
+      // A factor of 2 is exact, so that only the metric itself can cause a difference.
       std::vector<double> larger = this->Arguments;
       std::for_each(larger.begin(), larger.end(), [](double& x) { x *= 2; });
       this->compare(values, larger, "scale", "scaleInvariant");
@@ -205,6 +207,8 @@ private:
         x[k] = at - step;
         this->Metric.evaluate(this->Type, 1, 1, x.data(), &before, nullptr);
         x[k] = at;
+        // Deviations are relative to the largest derivative, because small ones may consist of
+        // rounding.
         const double difference = (beyond - before) / (2 * step);
         if (!(std::abs(difference - slopes[k]) <= tolerance * largest) ||
           !(std::abs(value - values[i]) <= tolerance * largest))

@@ -38,6 +38,7 @@ enum Field
 std::string factsOf(const MetricInfo& info)
 {
   std::ostringstream text;
+  // All digits, so that the client gets the same numbers.
   text.precision(std::numeric_limits<double>::max_digits10);
   const bool volume = info.in3D;
   const Range full = volume ? info.full3D : info.full2D;
@@ -99,6 +100,7 @@ std::string listUserMetrics()
   std::string lines;
   for (const MetricInfo& info : metricRegistry())
   {
+    // This process cannot evaluate a mirrored metric: it must not offer one.
     if (info.user && isRegisteredHere(info.metric))
     {
       lines += std::to_string(static_cast<int>(info.metric)) + "\t" + info.label + "\t" +

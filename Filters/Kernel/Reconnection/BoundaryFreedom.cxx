@@ -61,6 +61,8 @@ void keepBorders(const TetrahedronMesh& mesh, const std::vector<std::int32_t>& c
   const auto restrict = [&](PointId v, const Vec3& direction)
   {
     PointFreedom& freedom = freedoms[v];
+    // A point in a plane may still slide along a border; a second border in another direction fixes
+    // it.
     if (freedom.kind == PointFreedom::InPlane && !freedom.isCurved())
     {
       freedom = { PointFreedom::OnLine, direction };
@@ -75,6 +77,7 @@ void keepBorders(const TetrahedronMesh& mesh, const std::vector<std::int32_t>& c
     const auto [a, b, third, kind] = *first;
     const auto last = std::find_if(
       first, walls.end(), [a = a, b = b](const Entry& e) { return e[0] != a || e[1] != b; });
+    // An edge is part of a border if it has a single wall or walls of different classes.
     const bool differs =
       std::any_of(first, last, [kind = kind](const Entry& e) { return e[3] != kind; });
     if (differs || last - first == 1)
@@ -105,6 +108,7 @@ std::vector<char> nonManifoldPoints(TetrahedronMesh& mesh)
     pollInterruption(v);
     if (mesh.used(v))
     {
+      // star() walks across faces: at a non-manifold point, it misses a part of the tetrahedra.
       mesh.star(v, star);
       flags[v] = static_cast<std::int32_t>(star.size()) != uses[v];
     }

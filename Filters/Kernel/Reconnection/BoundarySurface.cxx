@@ -237,6 +237,7 @@ bool BoundarySurface::keepsPoints(
   }
   const Vec3 margin = { reach, reach, reach };
   return this->Kept.all(box.low - margin, box.high + margin,
+    // Points that are not near a former facet are not affected by the change.
     [&](const Vec3& x) { return isNear(facets, x) || !isNear(former, x); });
 }
 
@@ -325,10 +326,12 @@ bool BoundarySurface::joins(
   {
     return false;
   }
+  // A corner can only join another corner of its group.
   if (from.kind == PointFreedom::Fixed)
   {
     return from.group != NoId && from.group == to.group;
   }
+  // Other points may join a corner that touches all of their patches, so that no patch is cut off.
   const std::vector<std::int32_t>&own = this->Sets[from.patches], &all = this->Sets[to.patches];
   return std::includes(all.begin(), all.end(), own.begin(), own.end());
 }
@@ -375,6 +378,7 @@ BoundarySurface::BoundarySurface(
     }
     return entry->second;
   };
+  // Sets of single patches come first, so that they have the numbers of the patches.
   for (std::int32_t patch = 0; patch < this->Patches; ++patch)
   {
     numberOf({ patch });
@@ -399,6 +403,7 @@ BoundarySurface::BoundarySurface(
   }
   this->Kept.build(this->Whole.front().samples(SampleDivisions));
   this->groupCorners(features, changing, touched);
+  // The groups have changed the sets of their corners, so the sets are numbered only now.
   for (PointId v = 0; v < changing.pointSlots(); ++v)
   {
     this->Freedoms[v].patches = touched[v].empty() ? NoId : numberOf(touched[v]);
@@ -454,11 +459,13 @@ int BoundarySurface::patchOf(
 bool BoundarySurface::accepts(const std::array<Vec3, 3>& x, int patch) const
 {
   const auto& [a, b, c] = x;
+  // The facets may be listed from inside: `Sense` makes their normals point outward.
   return this->Parts[patch].accepts(x, this->Sense * cross(b - a, c - a), this->Cosine);
 }
 
 double BoundarySurface::distance(const TetrahedronMesh& changed) const
 {
+  // The larger of both one-sided distances.
   const SurfaceProjection now(boundaryOf(changed), nullptr);
   return std::max(now.distanceTo(this->Whole.front(), 1, SampleDivisions),
     this->Whole.front().distanceTo(now, 1, SampleDivisions));

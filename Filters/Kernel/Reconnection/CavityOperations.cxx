@@ -24,6 +24,7 @@ void CavityOperations::addCounts(const OperationCounts& counts)
 bool CavityOperations::aboveFloor(
   const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c, double q) const
 {
+  // From this quality on, the other two bounds hold and need not be computed.
   if (q >= this->floor.sufficient)
   {
     return true;
@@ -48,6 +49,7 @@ bool CavityOperations::improves()
   this->After = this->Change.qualities;
   std::sort(this->Before.begin(), this->Before.end());
   std::sort(this->After.begin(), this->After.end());
+  // Lexicographic order: the worst pair of different qualities decides.
   for (std::size_t i = 0; i < std::min(this->Before.size(), this->After.size()); ++i)
   {
     if (std::abs(this->After[i] - this->Before[i]) > SameQuality * this->Before[i])
@@ -55,6 +57,7 @@ bool CavityOperations::improves()
       return this->After[i] > this->Before[i];
     }
   }
+  // If all of them agree, fewer tetrahedra are better.
   return this->After.size() < this->Before.size();
 }
 
@@ -74,6 +77,7 @@ bool CavityOperations::isValidChange()
   {
     const TetVertices& v = this->Change.after[i];
     const double q = this->Change.qualities[i];
+    // Near 0, the sign of the rounded quality is uncertain.
     if (q <= CertainQuality && this->Mesh.computeExactQuality(v) <= 0.0)
     {
       return false;
@@ -93,6 +97,7 @@ bool CavityOperations::applyChange()
   {
     return this->Mesh.replace(this->Change, this->Created);
   }
+  // A record for undo().
   Step step;
   for (TetId t : this->Change.before)
   {
@@ -131,6 +136,7 @@ void CavityOperations::touch(const std::vector<TetId>& tets)
     this->Affected.insert(this->Affected.end(), tets.begin(), tets.end());
     return;
   }
+  // The stars of these vertices have changed, so that smoothing them may succeed again.
   ++this->Clock;
   for (TetId t : tets)
   {
@@ -147,6 +153,7 @@ bool CavityOperations::loadStar(PointId v, StarSmoothing& star)
   this->Mesh.star(v, this->Star);
   star.clear();
   star.weights = this->Mesh.weights();
+  // The arrays of StarSmoothing have a fixed size.
   if (this->Star.size() > StarSmoothing::MaxFaces)
   {
     return false;
@@ -200,6 +207,7 @@ bool CavityOperations::smooth(PointId v, int steps)
   if (!(after > before * (1.0 + SameQuality)) || p == this->Mesh.point(v) ||
     (freedom.isCurved() && !this->keepsSurface(v, p)))
   {
+    // The failure is remembered until the star changes.
     this->SmoothedAt[v] = this->Tentative ? this->SmoothedAt[v] : this->Clock + 1;
     return false;
   }
@@ -284,6 +292,7 @@ bool CavityOperations::canContract(PointId v, PointId w, const EdgeRing& ring)
   {
     return this->canContractCurved(v, w, ring);
   }
+  // A point in a flat wall may only move within it.
   const Vec3 d = this->Mesh.point(w) - this->Mesh.point(v);
   return norm(d - freedom.project(d)) <= this->flatTolerance * norm(d);
 }
@@ -312,6 +321,7 @@ bool CavityOperations::prepareContraction(TetId t, int i, int j, double above)
     {
       return false; // a point between regions
     }
+    // Tetrahedra that have both points vanish.
     if (this->Mesh.tet(s).indexOf(w) != NoId)
     {
       continue;

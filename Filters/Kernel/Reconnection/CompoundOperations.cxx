@@ -31,6 +31,7 @@ bool CavityOperations::smoothAround(double above)
   }
   std::sort(vertices.begin(), vertices.end());
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  // Smoothing adds to the affected tetrahedra, but the change is judged by these.
   const std::vector<TetId> core = this->Affected;
   for (int round = 0; round < Rounds; ++round)
   {
@@ -111,6 +112,7 @@ bool CavityOperations::repairAround(double above)
 bool CavityOperations::finishCompound(double above)
 {
   this->cleanAffected();
+  // Tentative changes skip the exact checks, which are made up for here.
   for (TetId t : this->Affected)
   {
     const TetVertices& v = this->Mesh.tet(t).vertices;
@@ -138,9 +140,11 @@ void CavityOperations::restorePoint(const Step& step)
 
 void CavityOperations::undo()
 {
+  // In reverse order, so that each step finds the tetrahedra that it has created.
   for (auto step = this->Steps.rbegin(); step != this->Steps.rend(); ++step)
   {
     this->Change.clear();
+    // A step without tetrahedra only records a point that was reused.
     if (step->created.empty())
     {
       if (step->isReused)
@@ -149,6 +153,7 @@ void CavityOperations::undo()
       }
       continue;
     }
+    // A step without former tetrahedra is the motion of a point.
     if (step->before.empty())
     {
       this->Mesh.movePoint(step->point, step->position, step->created, step->qualities.data());
@@ -161,6 +166,7 @@ void CavityOperations::undo()
       const TetVertices& v = step->before[i];
       for (PointId u : v)
       {
+        // The step has removed this point, which is needed again.
         if (!this->Mesh.used(u))
         {
           this->Mesh.reclaimPoint(u);
@@ -247,6 +253,7 @@ bool CavityOperations::tryCompound(TetId t, Compound kind)
   {
     for (int j = 0; j < 4; ++j)
     {
+      // A contraction has a direction, the removal of an edge does not.
       const bool done = kind == Compound::Contraction
         ? i != j && this->attempt(above, [&]() { return contract(i, j); })
         : i < j &&

@@ -161,6 +161,7 @@ bool CavityOperations::keepsSurface()
   std::sort(faces.begin(), faces.end());
   for (std::size_t i = 0; i < faces.size(); ++i)
   {
+    // A face that occurs twice is inside the replacement.
     const bool shared = (i > 0 && faces[i - 1].first == faces[i].first) ||
       (i + 1 < faces.size() && faces[i + 1].first == faces[i].first);
     if (shared)
@@ -225,6 +226,7 @@ bool CavityOperations::canContractCurved(PointId v, PointId w, const EdgeRing& r
   this->Mesh.star(v, this->Star);
   this->Mesh.star(w, this->OtherStar);
   const PointLink own(this->Mesh, v, this->Star), other(this->Mesh, w, this->OtherStar);
+  // The link condition, for the points, the edges and the boundary.
   if (countCommon(own.points, other.points) != static_cast<std::size_t>(ring.vertices) ||
     countCommon(own.edges, other.edges) != static_cast<std::size_t>(ring.size) ||
     countCommon(own.boundary, other.boundary) != WallsOfEdge)

@@ -155,6 +155,7 @@ bool CellRemover::follows(Index cell, const Nodes& nodes, bool mayVanish) const
   {
     return after == Degenerate && mayVanish;
   }
+  // A triangle in space has no sign: its normal must not turn by more than 90 degrees.
   return this->Corners == 4 || dot(this->normalOf(this->Cells[cell]), this->normalOf(nodes)) > 0;
 }
 
@@ -193,6 +194,7 @@ void CellRemover::add(const Nodes& nodes, Index origin)
 /// Adds all faces of a simplex, including itself.
 void addFaces(const Simplex& simplex, std::set<Simplex>& faces)
 {
+  // Each number from 1 on stands for a nonempty subset of the corners.
   for (unsigned chosen = 1; chosen < 1U << simplex.size(); ++chosen)
   {
     Simplex face;
@@ -231,6 +233,8 @@ std::set<Simplex> CellRemover::linkOf(const Simplex& face) const
   }
   for (const auto& [facet, uses] : facets)
   {
+    // Boundary facets are extended to the apex -1, so that the condition also protects the
+    // boundary.
     if (uses == 1)
     {
       Simplex cone = without(facet, face);
@@ -252,6 +256,7 @@ bool CellRemover::mayMerge(Index from, Index to) const
   std::set<Simplex> both;
   std::set_intersection(
     one.begin(), one.end(), other.begin(), other.end(), std::inserter(both, both.begin()));
+  // The link of the edge must be the intersection of the links of its ends (Dey et al., 1999).
   if (both != this->linkOf(sorted(Simplex{ from, to })))
   {
     return false;
@@ -294,6 +299,7 @@ bool CellRemover::merge(Index from, Index to)
 bool CellRemover::divide(const Simplex& face, Index by)
 {
   const std::vector<Index> cells = this->cellsAt(face);
+  // All parts are checked first, so that a failure leaves the mesh unchanged.
   for (Index cell : cells)
   {
     for (Index corner : face)
@@ -452,6 +458,8 @@ bool CellRemover::dropFlat(Index cell, const Simplex& edge)
   const Vec3 n = cross(b - a, d - c);
   const auto parts = [&n](const Vec3& from, const Vec3& to, const Vec3& p, const Vec3& q)
   { return dot(n, cross(to - from, p - from)) * dot(n, cross(to - from, q - from)) < 0; };
+  // The two opposite edges must cross each other in the projection: the tetrahedron is a flat
+  // quadrilateral.
   if (!parts(a, b, c, d) || !parts(c, d, a, b) || this->cellsAt(edge).size() != 1 ||
     !this->isOpen({ edge[0], edge[1], others[0] }) ||
     !this->isOpen({ edge[0], edge[1], others[1] }))
@@ -541,6 +549,7 @@ void CellRemover::collect(DegenerateRemoval& result)
     result.cells.insert(result.cells.end(), nodes.begin(), nodes.begin() + this->Corners);
     result.originalCells.push_back(this->Origins[cell]);
   }
+  // Points may have been merged into points that were merged later.
   for (Index& to : this->MergedInto)
   {
     while (this->MergedInto[to] != to)

@@ -33,6 +33,8 @@ std::vector<EdgeMetric> edgeMetrics(const std::vector<Vec3>& points, int exponen
   const std::vector<double>& lengths, const ReconnectionOptions& options)
 {
   const std::size_t count = points.size();
+  // Points are in units of 2^exponent, so that lengths are divided by it and metrics multiplied by
+  // its square, exactly.
   const auto converted = [&](double length) { return std::ldexp(length, -exponent); };
   if (options.size == ReconnectionSize::None)
   {

@@ -30,6 +30,7 @@ double facetQuality(const Vec3& a, const Vec3& b, const Vec3& c, const QualityWe
   }
   smoothing.clear();
   smoothing.weights = weights; // before faces are added
+  // Only here, smaller gains than usual count.
   const double leastGain = smoothing.leastGain;
   smoothing.leastGain = LeastGain;
   smoothing.addFace(a, b, c);

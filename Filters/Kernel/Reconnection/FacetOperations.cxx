@@ -69,6 +69,7 @@ bool CavityOperations::contractFacet(TetId t, int i, int j, double ratio)
     for (int k = 0; k < 4; ++k)
     {
       TriangleVertices f = this->Mesh.face(s, k);
+      // The face opposite to v does not change, and facets with both points vanish.
       if (k == at || !this->Mesh.isWall(s, k) || std::find(f.begin(), f.end(), w) != f.end())
       {
         continue;
@@ -178,6 +179,7 @@ bool CavityOperations::improveFacet(TetId t, int i)
   {
     done = this->swapFacet(t, OppositeFace[i][k], OppositeFace[i][(k + 1) % 3]);
   }
+  // All six ordered pairs of the corners of the facet.
   for (int k = 0; k < 6 && !done && this->contracts; ++k)
   {
     done =

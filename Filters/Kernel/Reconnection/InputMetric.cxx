@@ -33,6 +33,7 @@ MetricTensor InputMetric::at(const Vec3& x, TetId& cell) const
     sum += w;
   }
   const TetVertices& v = this->Input.cells[cell];
+  // Interpolation of the logarithms keeps the result positive definite.
   MetricTensor mean = {};
   for (int i = 0; i < 4; ++i)
   {

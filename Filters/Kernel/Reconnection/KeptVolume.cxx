@@ -86,6 +86,8 @@ void TriangleOperations::keepVolume(double volume, double leastQuality)
     {
       this->Mesh.star(offset.point, this->Around);
       offset.area = offset.back ? Vec3{ 0, 0, 0 } : this->bentArea();
+      // A point that moves by h along its normal adds h / 3 times the area of its triangles; the
+      // vector has twice this area.
       area += norm(offset.area) / 6.0;
     }
     if (std::abs(lacking) <= VolumeGoal * std::abs(volume) || !(area > 0.0))

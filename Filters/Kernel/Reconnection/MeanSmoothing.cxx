@@ -121,6 +121,7 @@ double CavityOperations::excess(const TetVertices& v) const
 /// Whether the replacement decreases the sum.
 bool CavityOperations::decreasesSum() const
 {
+  // The change must be below minus the minimum decrease.
   double change = LeastSumDecrease;
   for (const TetVertices& v : this->Change.after)
   {
@@ -148,6 +149,8 @@ bool CavityOperations::canTriangulateForSum(const EdgeRing& ring)
   {
     this->Best[i][i + 1] = 0.0;
   }
+  // Dynamic programming over intervals of increasing length finds the best triangulation of the
+  // ring (G. T. Klincsek, 1980).
   for (int length = 2; length < n; ++length)
   {
     for (int i = 0; i + length < n; ++i)
@@ -158,6 +161,7 @@ bool CavityOperations::canTriangulateForSum(const EdgeRing& ring)
       for (int k = i + 1; k < j; ++k)
       {
         double sum = this->Best[i][k] + this->Best[k][j];
+        // The evaluation ends as soon as the sum exceeds the best one.
         sum += sum < best ? this->excess({ r[i], r[k], r[j], ring.b }) : 0.0;
         sum += sum < best ? this->excess({ r[k], r[i], r[j], ring.a }) : 0.0;
         if (sum < best)

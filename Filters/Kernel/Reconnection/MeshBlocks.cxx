@@ -65,12 +65,15 @@ MeshBlock::MeshBlock(const TetrahedronMesh& whole, const OperationRules& rules,
   this->Operations.sums = rules.sums;
   this->Operations.inserts = rules.inserts;
   const double share = static_cast<double>(this->Own.size()) / static_cast<double>(whole.size());
+  // Each block gets its share of the permitted change of the count, rounded down, so that the total
+  // is not exceeded.
   const auto shareOf = [share](Index count) {
     return static_cast<Index>(std::floor(share * static_cast<double>(std::max<Index>(count, 0))));
   };
   this->Operations.largestSize = this->Mesh.size() + shareOf(rules.largestSize - whole.size());
   this->Operations.smallestSize = this->Mesh.size() - shareOf(whole.size() - rules.smallestSize);
   this->Shared.assign(this->Points.size(), 0);
+  // Points of outside tetrahedra belong to other blocks as well, so they stay fixed.
   for (std::size_t k = this->Own.size(); k < this->Own.size() + this->Outside.size(); ++k)
   {
     for (PointId v : this->Mesh.tet(static_cast<TetId>(k)).vertices)
@@ -121,6 +124,7 @@ void MeshBlock::addOutside(
       arrays.labels.push_back(whole.labels(t));
     }
   }
+  // A face is coded as 4 t + i; both sides of a cut face are linked to each other in local numbers.
   for (SharedFace& f : this->Faces)
   {
     const TetId inside = localOf(this->Own, f.inside >> 2);
@@ -226,6 +230,7 @@ public:
     , Arrays(whole.release())
   {
     std::size_t tets = this->Arrays.tets.size(), points = this->Arrays.points.size();
+    // Existing items keep their ids; the new ones of each block get a range behind all others.
     for (const auto& block : blocks)
     {
       this->FirstTets.push_back(static_cast<TetId>(tets));
@@ -256,6 +261,7 @@ public:
       const MeshBlock& block = *this->Blocks[b];
       for (const MeshBlock::SharedFace& f : block.Faces)
       {
+        // The outside tetrahedron has not changed, but its neighbor in the block may be a new one.
         const std::int32_t now = block.Mesh.tet(f.local >> 2).neighbors[f.local & 3];
         this->Now.push_back({ f.inside, 4 * this->tetOf(b, now >> 2) + (now & 3) });
       }
@@ -286,6 +292,7 @@ public:
       }
       for (std::int32_t& n : tet.neighbors)
       {
+        // Links to other blocks follow in connect(), when all blocks are written.
         const bool isOutside =
           n != NoId && n >> 2 < known && n >> 2 >= static_cast<TetId>(block.Own.size());
         n = n == NoId || isOutside ? NoId : 4 * this->tetOf(b, n >> 2) + (n & 3);
@@ -300,6 +307,7 @@ public:
     }
     for (PointId v = 0; v < block.Mesh.pointSlots(); ++v)
     {
+      // Shared points have not moved, and several blocks would write them at the same time.
       if (v >= static_cast<PointId>(block.Points.size()) || !block.Shared[v])
       {
         const PointId p = this->pointOf(b, v);

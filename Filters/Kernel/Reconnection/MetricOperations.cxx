@@ -84,6 +84,7 @@ struct StarSum
   void addLength(const Vec3& p, const Vec3& q, const MetricTensor& m)
   {
     const Vec3 e = q - p, me = product(m, e);
+    // m is the sum of the metrics at both ends, so its half is their mean.
     const double square = std::max(0.5 * dot(e, me), LeastLength2);
     const double logarithm = 0.5 * std::log(square);
     this->value += LengthWeight * logarithm * logarithm;
@@ -105,6 +106,7 @@ double middleOf(const Vec3& e, const MetricTensor& a, const MetricTensor& b)
   constexpr double nearlyEqual = 1e-3;
   const double ratio = std::sqrt(squaredLength(e, b) / squaredLength(e, a));
   const double logarithm = std::log(ratio);
+  // If both lengths are nearly equal, the quotient of the logarithms would cancel.
   return std::abs(logarithm) < nearlyEqual || !std::isfinite(logarithm)
     ? 0.5
     : std::log(0.5 * (1.0 + ratio)) / logarithm;
@@ -140,6 +142,7 @@ bool CavityOperations::freedomOfSplit(PointId a, PointId b, PointFreedom& freedo
   for (std::int32_t wall : this->Walls)
   {
     const TriangleVertices f = this->Mesh.face(wall >> 2, wall & 3);
+    // The exclusive or removes both ends of the edge from the three points of the face.
     const PointId third = f[0] ^ f[1] ^ f[2] ^ a ^ b;
     const Vec3 n = cross(e, this->Mesh.point(third) - x);
     const Vec3 unit = (1.0 / norm(n)) * n;
@@ -153,6 +156,7 @@ bool CavityOperations::freedomOfSplit(PointId a, PointId b, PointFreedom& freedo
     single = single && third == thirdOfFirst;
     flat = flat && kind == first && norm(cross(normal, unit)) <= this->flatTolerance;
   }
+  // In a common plane the point may move freely within it, otherwise only along the edge.
   freedom = flat && !single ? PointFreedom{ PointFreedom::InPlane, normal }
                             : PointFreedom{ PointFreedom::OnLine, (1.0 / norm(e)) * e };
   return true;
@@ -203,6 +207,7 @@ bool CavityOperations::curvedSplit(PointId a, PointId b, Vec3& x, PointFreedom& 
   }
   x = this->surface->closest(x, found);
   freedom = this->surface->at(x, found);
+  // Each facet is divided into two halves, which must both stay close to the boundary.
   for (const TriangleVertices& f : facets)
   {
     for (const PointId end : { a, b })
@@ -239,6 +244,8 @@ bool CavityOperations::splitAt(PointId a, PointId b, const Vec3& x, const PointF
       TetVertices v = this->Mesh.tet(t).vertices;
       *std::find(v.begin(), v.end(), end) = p;
       qualities.push_back(this->Mesh.computeExactQuality(v));
+      // A split must not create inverted tetrahedra, unless the divided one was not positive
+      // either.
       positive = positive && (qualities.back() > 0.0 || !(this->Mesh.quality(t) > 0.0));
       least = std::min(least, qualities.back());
     }
@@ -267,6 +274,7 @@ bool CavityOperations::splitEdge(TetId t, int i, int j)
   PointFreedom freedom;
   const bool outside = std::any_of(this->Fan.begin(), this->Fan.end(),
     [this](TetId s) { return this->Mesh.region(s) == OutsideRegion; });
+  // If both ends are non-manifold points, the fan may miss a part of the tetrahedra at the edge.
   if (outside || (this->isNonManifold(a) && this->isNonManifold(b)) ||
     !this->freedomOfSplit(a, b, freedom))
   {
@@ -310,6 +318,7 @@ bool CavityOperations::canContractInMetric(TetId t, int i, int j)
   {
     return false;
   }
+  // An edge that crosses the volume between two points of walls must not be contracted.
   this->Mesh.fan(t, i, j, this->Fan, this->Walls);
   return !this->Walls.empty();
 }
@@ -337,6 +346,7 @@ double CavityOperations::prepareContractionInMetric(PointId v, PointId w)
     }
     if (other != NoId)
     {
+      // All points of a tetrahedron that vanishes are already connected to w.
       around.insert(around.end(), tet.vertices.begin(), tet.vertices.end());
       continue;
     }
@@ -392,6 +402,7 @@ bool CavityOperations::contractEdge(TetId t, int i, int j)
     {
       continue;
     }
+    // The preparation of the other direction may have overwritten this replacement.
     this->prepareContractionInMetric(first ? v : w, first ? w : v);
     if (this->isValidChange() && this->applyChange())
     {
@@ -416,6 +427,7 @@ bool CavityOperations::acceptMotion(PointId v, const Vec3& p, double least)
     former.push_back(this->Mesh.quality(t));
   }
   TetId cell = this->cellNear(v);
+  // The point moves before the test, because the qualities are computed from the mesh.
   this->Mesh.setMetric(v, this->field->at(p, cell));
   this->Mesh.movePoint(v, p, {}, nullptr);
   bool kept = true;
@@ -484,6 +496,7 @@ bool CavityOperations::relax(PointId v)
   {
     return false;
   }
+  // The derivatives treat the metric as constant; the line search evaluates it at each position.
   Vec3 step = newtonStep(before.gradient, before.hessian, freedom);
   for (int k = 0; k < Halvings; ++k, step = 0.5 * step)
   {
@@ -508,6 +521,7 @@ bool CavityOperations::smoothInMetric(PointId v, int steps)
 {
   const Vec3 start = this->Mesh.point(v);
   const PointFreedom freedom = this->freedomAt(v);
+  // With the Cholesky factor R of M = R^t R, the length of y = R x is the length of x in M.
   const Matrix3d root = matrixOf(this->Mesh.metric(v)).llt().matrixU();
   const Matrix3d back = root.inverse();
   const auto transformed = [&](const Vec3& x) { return fromEigen(root * toEigen(x - start)); };
@@ -530,6 +544,7 @@ bool CavityOperations::smoothInMetric(PointId v, int steps)
   PointFreedom turned = freedom;
   if (freedom.kind != PointFreedom::Free)
   {
+    // A normal is transformed by the transposed inverse, a tangent by the matrix itself.
     const Vector3d d = toEigen(freedom.direction);
     const Vector3d image =
       freedom.kind == PointFreedom::InPlane ? Vector3d(back.transpose() * d) : Vector3d(root * d);
@@ -543,6 +558,7 @@ bool CavityOperations::smoothInMetric(PointId v, int steps)
   }
   Vec3 y = { 0, 0, 0 };
   this->Smoothing.maximize(y, steps, turned, project);
+  // Rounding of the transformations must not move the point out of its plane or line.
   const Vec3 p = freedom.isCurved() ? original(y) : start + freedom.project(original(y) - start);
   if (norm(y) > 0.0 && (!freedom.isCurved() || this->keepsSurface(v, p)) &&
     this->acceptMotion(v, p, before * (1.0 + this->Smoothing.leastGain)))

@@ -33,6 +33,8 @@ MetricQuality::MetricQuality(Metric metric, int exponent, double mean)
     "another metric");
   requireDerivatives(info);
   const double ideal = info.ideal3D;
+  // With a positive ideal value u, the quality is x / u or u / x; otherwise x / (x + u) or u / (x +
+  // u), with a typical value u.
   this->Reciprocal = std::isfinite(ideal) && ideal > 0.0;
   this->Unit = this->Reciprocal ? ideal : (ideal == 0.0 ? 1.0 : mean);
   check(this->Unit > 0.0 && std::isfinite(this->Unit), info,
@@ -92,6 +94,7 @@ void MetricQuality::evaluate(
       batch.cells[l] = 0;
       for (int c = 0; c < 3; ++c)
       {
+        // The metric may have a unit, so the vectors are converted to the units of the input mesh.
         batch.points[0][c][l] = 0.0;
         for (int k = 0; k < 3; ++k)
         {
@@ -105,6 +108,7 @@ void MetricQuality::evaluate(
     for (int l = 0; l < batch.count; ++l)
     {
       const std::array<Vec3, 3>& f = faces[first + l];
+      // The sign comes from the determinant, because not all metrics have one.
       const double determinant = dot(f[0] - p, cross(f[1] - p, f[2] - p));
       double slope = 0.0;
       const bool positive = determinant > 0.0 && std::isfinite(value[l]);

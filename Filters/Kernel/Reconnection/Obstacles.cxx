@@ -84,6 +84,7 @@ double boundOf(
           mesh.point(f[0]), mesh.point(f[1]), mesh.point(f[2]), mesh.weights(), smoothing));
     }
   }
+  // Bounds below the quality that was reached are inaccurate.
   return std::max(bound, mesh.quality(t));
 }
 }
@@ -118,6 +119,7 @@ void findObstacles(const TetrahedronMesh& mesh, const TetrahedronPasses& passes,
     {
       // No bound is known in a metric.
       bound = options.adapt ? 1.0 : boundOf(mesh, passes, t, smoothing);
+      // The first reason that applies, in the order of their strength.
       obstacle = bound <= quality * (1.0 + NearBound) ? Obstacle::Facets
         : any(fixedPoints)                            ? Obstacle::FixedPoints
         : any(walls.atInterface)                      ? Obstacle::Interface

@@ -63,6 +63,7 @@ double clippedVolume(const Corners& x, const Vec3* normals, const double* positi
     }
     case 3:
     {
+      // Without the cut corner, a wedge of three tetrahedra remains.
       const Vec3 a = between(0, 3), b = between(1, 3), c = between(2, 3);
       return rest(v[0], v[1], v[2], a) + rest(v[1], v[2], a, b) + rest(v[2], a, b, c);
     }
@@ -82,6 +83,7 @@ double sharedVolume(const Corners& x, const Corners& y)
     const Vec3 n = cross(y[f[1]] - y[f[0]], y[f[2]] - y[f[0]]);
     normals[i] = dot(n, y[i] - y[f[0]]) < 0.0 ? -1.0 * n : n;
     positions[i] = dot(normals[i], y[f[0]]);
+    // The plane of a face that separates both tetrahedra ends the test early.
     if (std::all_of(
           x.begin(), x.end(), [&](const Vec3& p) { return dot(normals[i], p) <= positions[i]; }))
     {
@@ -98,6 +100,8 @@ OverlapRow InputLocator::overlaps(const Corners& corners, TetId start) const
   OverlapRow result;
   std::vector<TetId> queue = { start };
   std::unordered_set<TetId> known = { start };
+  // The overlapped cells are connected, so the search only continues from cells with a common
+  // volume.
   for (std::size_t i = 0; i < queue.size(); ++i)
   {
     const TetId t = queue[i];
@@ -129,6 +133,7 @@ void takeOverlaps(std::vector<OverlapRow>& rows, ReconnectionResult& result)
 {
   for (std::size_t c = 0; c < rows.size(); ++c)
   {
+    // An unchanged tetrahedron has no row yet: it consists of its original cell.
     if (rows[c].empty())
     {
       rows[c].push_back({ static_cast<std::int32_t>(result.originalCells[c]), 1.0 });

@@ -113,6 +113,8 @@ PassOptions withoutCompound(PassOptions pass)
 std::vector<PassOptions> lastPasses(const std::vector<PassOptions>& passes)
 {
   std::vector<PassOptions> last;
+  // A pass includes the operations of the earlier ones, so only the last of several simple passes
+  // remains.
   for (const PassOptions& pass : passes)
   {
     if (!last.empty() && !last.back().compound)

@@ -58,6 +58,8 @@ bool CavityOperations::isOpened(const CavityFace& face, const Insertion& inserti
   const Vec3& a = this->Mesh.point(f[0]);
   const Vec3 n = cross(this->Mesh.point(f[1]) - a, this->Mesh.point(f[2]) - a);
   const double area = norm(n);
+  // n has the length `area`, so this compares the height of the point with the size sqrt(area) of
+  // the facet.
   return std::abs(dot(n, insertion.point - a)) <=
     std::max(this->flatTolerance, RoundingHeight) * area * std::sqrt(area);
 }
@@ -95,6 +97,7 @@ void CavityOperations::grow(Insertion& insertion)
     {
       break;
     }
+    // Cavities only grow, so the best one is given by its number of tetrahedra.
     if (worst->quality > best)
     {
       best = worst->quality;
@@ -118,6 +121,7 @@ bool CavityOperations::startInsertion(
   bool better = false;
   for (int round = 0; round < Rounds; ++round)
   {
+    // Each round grows a cavity again, for the improved position of the point.
     trial.tets = start;
     this->grow(trial);
     if (!(trial.quality > 0.0))
@@ -302,6 +306,7 @@ bool CavityOperations::applyInsertion(const Insertion& best)
           std::binary_search(kept.begin(), kept.end(), u));
     }
   }
+  // This step precedes the step of commit(), so that it is undone last.
   if (this->Tentative)
   {
     this->Steps.push_back(former);

@@ -77,6 +77,7 @@ std::unique_ptr<MetricQuality> metricOf(
   double sum = 0.0;
   for (double value : values)
   {
+    // Divided before the summation, which could overflow.
     sum += value / static_cast<double>(values.size());
   }
   return std::make_unique<MetricQuality>(options.metric, input.exponent, sum);
@@ -285,9 +286,11 @@ void Run::setFloor(const ReconnectionRecord& record)
   QualityFloor& floor = this->Operations.floor;
   floor.smallestAngle = record.smallestAngle;
   floor.quality = record.worstQuality;
+  // The inverse mean ratio of the record is the power -2/3 of this ratio.
   floor.meanRatio = std::pow(record.worstInverseMeanRatio, -1.5);
   const double sine = record.smallestAngle < 90.0 ? std::sin(radians(record.smallestAngle)) : 1.0;
   const QualityWeights& weights = this->Mesh.weights();
+  // From this quality on, neither the angle nor the mean ratio can be below the floor.
   floor.sufficient = std::max(weights.sine * sine, weights.meanRatio * floor.meanRatio);
 }
 
@@ -297,6 +300,7 @@ void Run::setBounds()
   const bool keepsCount = this->Options.smallestCount == 1.0 && this->Options.largestCount == 1.0;
   if (this->Options.adapt)
   {
+    // Faces are coded as 4 t + i in 31 bits.
     this->Operations.largestSize = std::numeric_limits<std::int32_t>::max() / 8;
     return;
   }
@@ -389,6 +393,8 @@ bool Run::runStage(const std::vector<PassOptions>& stage, double end)
   const std::vector<char> starts = this->flagsOf(this->Options.starts);
   this->Passes.starts = starts;
   const int levels = levelsOf(this->Mesh.size(), this->Options.blockSize);
+  // After the blocks, only the last passes run on the whole mesh, where the blocks could not change
+  // it.
   return (levels == 0 || this->runInBlocks(stage, levels, starts, end)) &&
     this->runPasses(this->Passes.starts.empty() ? stage : lastPasses(stage), end);
 }
@@ -428,6 +434,7 @@ bool Run::runPasses(std::vector<PassOptions> passes, double end)
     const double done = static_cast<double>(i + 1) / static_cast<double>(planned + Repetitions);
     stopped = !this->record(before.pass + 1, start + (end - start) * done) || !complete;
     const double gain = this->Result.history.back().worstQuality - before.worstQuality;
+    // A pass that has used up its failures is followed by one without the expensive operations.
     if (this->Passes.exhausted() && !stopped)
     {
       passes.push_back(withoutCompound(passes[i]));
@@ -480,6 +487,7 @@ bool Run::runBlocks(
   const std::thread::id caller = std::this_thread::get_id();
   const auto proceed = [&]()
   {
+    // Only the calling thread may call the observer; the others test interruption and the clock.
     const bool goesOn = !stop &&
       (std::this_thread::get_id() == caller ? this->Progress.proceed()
                                             : !callerIsInterrupted() && !this->Progress.late());
@@ -497,6 +505,7 @@ bool Run::runBlocks(
     MeshBlock& block = *blocks[b];
     TetrahedronPasses& own = block.passes();
     own.proceed = proceed;
+    // Tetrahedra at the faces between blocks come last, because their shared points cannot move.
     own.postponed = block.shared();
     for (std::size_t i = 0; i < block.points().size(); ++i)
     {
@@ -530,6 +539,7 @@ bool Run::runBlocks(
     }
   };
   parallelFor(static_cast<Index>(blocks.size()), 1, this->Options.threads, runBlock);
+  // If nothing else has set the reason, the time is over.
   if (stop && this->Result.reason == StopReason::NoProgress)
   {
     this->Result.reason = StopReason::TimeLimit;
@@ -623,6 +633,7 @@ void requireFeasible(const TetrahedronMesh& mesh)
       (mesh.metric(v[0]) + mesh.metric(v[1])) + (mesh.metric(v[2]) + mesh.metric(v[3]));
     constexpr double corners = 4.0;
     const double volume = std::abs(dot(x(1) - x(0), cross(x(2) - x(0), x(3) - x(0)))) / 6.0;
+    // The determinant of the mean of four 3 x 3 tensors is the determinant of their sum over 4^3.
     expected += volume * std::sqrt(determinantOf(sum) / (corners * corners * corners));
   }
   requireRoom(expected / idealVolume, "tetrahedra", bytesPerTetrahedron);
@@ -720,6 +731,7 @@ ReconnectionResult improveConnectivity(const Mesh& mesh, const ReconnectionOptio
   std::vector<PointFreedom> freedoms;
   if (options.boundary == BoundaryMotion::OnSurface && changing.size() > 0)
   {
+    // The surface uses the scaled coordinates of the changing mesh.
     MeshView scaled = mesh.view();
     scaled.points = input.points.data()->data();
     surface = std::make_shared<BoundarySurface>(Mesh(scaled), changing, options);

@@ -150,6 +150,7 @@ ReconnectionInput convertInput(const Mesh& mesh, const ReconnectionOptions& opti
     const double* x = view.points + 3 * view.connectivity[n];
     largest = std::max({ largest, std::abs(x[0]), std::abs(x[1]), std::abs(x[2]) });
   }
+  // Scaling by a power of two is exact; the largest coordinate is then between 1/2 and 1.
   std::frexp(largest, &input.exponent);
   input.points.resize(view.numberOfPoints);
   for (Index i = 0; i < 3 * view.numberOfPoints; ++i)
@@ -164,6 +165,7 @@ ReconnectionInput convertInput(const Mesh& mesh, const ReconnectionOptions& opti
     {
       input.cells[c][k] = static_cast<PointId>(v[k]);
     }
+    // In a mirrored mesh, valid cells are negative: exchanging two corners makes them positive.
     if (mesh.mirrored())
     {
       std::swap(input.cells[c][2], input.cells[c][3]);
@@ -198,6 +200,7 @@ void checkFaces(const TetrahedronMesh& mesh, int threads)
         {
           const auto id = static_cast<TetId>(t);
           const std::int32_t n = mesh.tet(id).neighbors[i];
+          // Each face is counted from its side with the smaller id.
           ofChunk[chunk] += n >> 2 > id && mesh.isTurned(id, i);
         }
       }

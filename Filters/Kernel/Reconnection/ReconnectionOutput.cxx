@@ -44,6 +44,8 @@ std::array<double, 4> InputLocator::weights(const Vec3& x, TetId cell) const
   { return dot(cross(b - a, c - a), d - a); };
   std::array<double, 4> w;
   double sum = 0.0;
+  // The weight of a corner is the volume of the tetrahedron of x and the opposite face, relative to
+  // the sum.
   for (int i = 0; i < 4; ++i)
   {
     const int* f = OppositeFace[i];
@@ -69,6 +71,7 @@ TetId InputLocator::walk(const Vec3& x, TetId start, bool crosses, bool& found) 
     const std::array<double, 4> w = this->weights(x, t);
     const auto least = std::min_element(w.begin(), w.end());
     found = *least >= WeightTolerance;
+    // The walk leaves the cell through the face opposite the corner with the smallest weight.
     const std::int32_t n = this->Neighbors[t][least - w.begin()];
     if (found || n == NoId || (!crosses && this->isWall(n, t)))
     {
@@ -147,12 +150,16 @@ std::vector<Index> writePoints(const Mesh& mesh, const ReconnectionInput& input,
   {
     pollInterruption(static_cast<Index>(v));
     const bool original = v < view.numberOfPoints;
+    // Input points that never belonged to a tetrahedron are kept; points that lost all of theirs
+    // are not.
     if (!changed.used(v) && !(original && !inInput[v]))
     {
       continue;
     }
     numbers[v] = count++;
     const bool moved = !original || changed.point(v) != input.points[v];
+    // Unmoved points keep their exact input coordinates; the others are scaled back by a power of
+    // two.
     for (int k = 0; k < 3; ++k)
     {
       result.points.push_back(
@@ -220,6 +227,7 @@ void convertOutput(const Mesh& mesh, const ReconnectionInput& input, const Tetra
     }
     TetVertices v = changed.tet(t).vertices;
     result.originalCells.push_back(originals[t]);
+    // In a mirrored mesh, the exchange of two corners restores the orientation of the input.
     if (mesh.mirrored())
     {
       std::swap(v[2], v[3]);
@@ -241,6 +249,7 @@ void convertOutput(const Mesh& mesh, const ReconnectionInput& input, const Tetra
     const TetId cell = locator.locate(changed.point(p), changed.origin(changed.tetOf(p)));
     place.cell = cell;
     place.weights = locator.weights(changed.point(p), cell);
+    // The weights follow the exchanged corners of the input cell.
     if (mesh.mirrored())
     {
       std::swap(place.weights[2], place.weights[3]);
@@ -280,6 +289,7 @@ void convertFacets(const ReconnectionInput& input, const ReconnectionOptions& op
     for (int i = 0; i < 4 && changed.alive(t); ++i)
     {
       const std::int32_t n = changed.tet(t).neighbors[i], label = changed.label(t, i);
+      // Each inner face is written once, by its tetrahedron with the smaller number.
       if (label == NoLabel || (n != NoId && n >> 2 < t))
       {
         continue;

@@ -131,6 +131,7 @@ void RankRounds::take(const RankTetrahedra& mesh)
     }
   }
   unitePoints(this->Part.points);
+  // Inserted points get numbers beyond the input points of all ranks.
   this->FirstInserted = this->NextPoint = this->Group.maximum(largest) + 1;
   this->FirstSize = this->Group.sum(static_cast<Index>(this->Part.cells.size()));
   this->Marked = this->Group.gatherJoined(mesh.markedFacets);
@@ -191,6 +192,7 @@ LocalMesh RankRounds::localMesh(const PartSurroundings& around, int round) const
   local.nearSeam = local.onSeam;
   for (int ring = 0; ring < Reach; ++ring)
   {
+    // The copy limits the growth to one ring per sweep.
     const std::vector<unsigned char> inner = local.nearSeam;
     for (auto v = local.connectivity.begin(); v != local.connectivity.end(); v += CornersOfCell)
     {
@@ -239,6 +241,7 @@ void RankRounds::setBounds(const LocalMesh& local, ReconnectionOptions& options)
   const double most = std::floor(this->Spent * sharedOut(options.largestCount * first - now));
   const double least = sharedOut(now - options.smallestCount * first);
   this->Largest = static_cast<double>(this->Part.cells.size()) + most;
+  // The bounds refer to the number of local cells, which includes the surroundings.
   options.largestCount = (all + most) / std::max(all, 1.0);
   options.smallestCount = (all - least) / std::max(all, 1.0);
   if (options.largestCount == 1.0 && options.smallestCount == 1.0)
@@ -267,6 +270,7 @@ void RankRounds::setOptions(
     bool here = true;
     for (std::size_t k = 0; k < facet.size() && here; ++k)
     {
+      // If the point is not here, placeOf() returns the place of the next larger number.
       places[k] = placeOf(local.points, facet[k]);
       here = places[k] < static_cast<Index>(local.points.size()) &&
         local.points[places[k]].number == facet[k];
@@ -312,6 +316,7 @@ void RankRounds::shareRecord(ReconnectionRecord& record) const
 void RankRounds::record(const ReconnectionResult& result, bool any)
 {
   std::vector<ReconnectionRecord>& history = this->Result.history;
+  // A rank without cells must not affect the minima and maxima of the others.
   ReconnectionRecord none;
   none.smallestAngle = 180.0;
   none.worstQuality = none.worstInverseMeanRatio = 1.0;
@@ -326,6 +331,7 @@ void RankRounds::record(const ReconnectionResult& result, bool any)
   this->shareRecord(last);
   const ReconnectionRecord& before = history.back();
   last.pass = before.pass + 1;
+  // The counts of a round start at 0, but the history has totals.
   last.edgeRemovals += before.edgeRemovals;
   last.faceRemovals += before.faceRemovals;
   last.boundarySwaps += before.boundarySwaps;
@@ -361,6 +367,7 @@ void RankRounds::addShares(const LocalMesh& local, const ReconnectionResult& res
         added.push_back({ number, corner, place.weights[k] });
         continue;
       }
+      // A corner inserted earlier is replaced by its own shares, so that only input points remain.
       auto share = std::lower_bound(known.begin(), known.end(), corner,
         [](const PartShare& a, Index point) { return a.point < point; });
       for (; share != known.end() && share->point == corner; ++share)
@@ -375,6 +382,7 @@ void RankRounds::addShares(const LocalMesh& local, const ReconnectionResult& res
   std::vector<PartShare>& shares = this->Part.shares;
   for (const PartShare& share : added)
   {
+    // Several corners may depend on the same input point: their weights are added.
     if (!shares.empty() && shares.back().point == share.point &&
       shares.back().number == share.number)
     {
@@ -394,6 +402,7 @@ void RankRounds::takeResult(const LocalMesh& local, const ReconnectionResult& re
   std::vector<char> used(result.originalPoints.size(), 0);
   std::vector<Index> numbers(used.size(), -1);
   Index inserted = 0;
+  // In the local numbering, the cells of the surroundings follow the owned ones.
   for (std::size_t c = 0; c < result.originalCells.size(); ++c)
   {
     for (int k = 0; k < CornersOfCell && result.originalCells[c] < own; ++k)
@@ -411,6 +420,7 @@ void RankRounds::takeResult(const LocalMesh& local, const ReconnectionResult& re
       [own](Index cell) { return cell < own; }) +
         LargestGrowth >
       this->Largest;
+  // The inserted points are numbered consecutively, in the order of the ranks.
   Index first = this->NextPoint;
   const std::vector<std::vector<Index>> counts =
     this->Group.gatherItems(std::vector<Index>{ inserted });
@@ -537,6 +547,7 @@ bool RankRounds::runRound(int round, int rounds)
     surroundingsOf(this->Group, this->Part, round == 0 ? this->Marked : none);
   if (round == 0)
   {
+    // A marked facet is counted on both of its sides.
     this->Result.markedFacets = this->Group.sum(around.markedSides) / 2;
   }
   this->shareOut(round, rounds);
@@ -552,10 +563,12 @@ bool RankRounds::runRound(int round, int rounds)
     mesh.setMirrored(this->Mirrored);
     result = improveConnectivity(mesh, options);
   }
+  // Ranks without cells also take part in the collective calls.
   this->takeResult(local, result);
   this->record(result, any);
   const ReconnectionRecord& last = this->Result.history.back();
   StopReason& reason = this->Result.reason;
+  // An abort on any rank takes precedence over the time limit on another.
   for (const StopReason stop : { StopReason::TimeLimit, StopReason::Aborted })
   {
     reason = this->Group.any(any && result.reason == stop) ? stop : reason;

@@ -29,6 +29,7 @@ bool SmoothPart::accepts(const std::array<Vec3, 3>& corner, const Vec3& normal, 
   std::int32_t piece = -1;
   for (const Vec3& x : { (1.0 / 3.0) * (a + b + c), 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a) })
   {
+    // The negated comparison also rejects NaN.
     if (!(norm(this->Facets.closest(x, direction, piece) - x) <= this->Distance))
     {
       return false;

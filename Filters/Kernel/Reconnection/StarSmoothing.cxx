@@ -80,6 +80,8 @@ double StarSmoothing::evaluate(const Vec3& p)
                  w2 = wx * wx + wy * wy + wz * wz;
     const double d = ux * ax + uy * ay + uz * az;
     const double sum = u2 + v2 + w2 + this->Edges[3][i];
+    // A sine is d l / (|n1| |n2|) with the normals at the edge: due to the common denominator, one
+    // square root serves all six.
     double s = u2 * a2 * o2;
     s = std::min(s, v2 * b2 * o2);
     s = std::min(s, w2 * c2 * o2);
@@ -145,6 +147,7 @@ void StarSmoothing::linearize(const Vec3& p, double below)
         this->G[this->Functions++] = (value * unit) * logGradient;
       }
     };
+    // Each function is added separately: their minimum is not smooth where several are equal.
     const double ds = this->weights.sine * d;
     add(this->weights.meanRatio * MeanRatioFactor * d / (sum * std::sqrt(sum)),
       gd + (3.0 / sum) * (u + v + w));
@@ -173,6 +176,7 @@ double StarSmoothing::solve(double weight, double wanted, Vec3& step)
   double predicted = 0.0;
   for (int k = 0; k < DualSteps || (predicted < wanted && k < LastDualSteps); ++k)
   {
+    // For fixed multipliers, the best step is the combined gradient divided by the weight.
     step = (1.0 / weight) * sum;
     int low = 0, high = -1;
     double lowest = 0.0, highest = 0.0;
@@ -196,6 +200,8 @@ double StarSmoothing::solve(double weight, double wanted, Vec3& step)
     {
       break;
     }
+    // The dual function is quadratic along an exchange of two multipliers: its minimum is exact,
+    // unless one multiplier reaches 0 before.
     const Vec3 difference = this->G[low] - this->G[high];
     const double curvature = dot(difference, difference) / weight;
     const double moved = curvature * this->Lambda[high] > highest - lowest
@@ -226,9 +232,11 @@ double StarSmoothing::maximize(
     int low = 0;
     for (int i = 0; i < this->Functions; ++i)
     {
+      // Components along which the point may not move must not contribute to the predicted gain.
       this->G[i] = freedom.project(this->G[i]);
       low = this->F[i] < this->F[low] ? i : low;
     }
+    // The dual problem starts with the worst function alone.
     std::fill(this->Lambda, this->Lambda + this->Functions, 0.0);
     this->Lambda[low] = 1.0;
     bool moved = false;
@@ -253,6 +261,7 @@ double StarSmoothing::maximize(
       }
     }
   }
+  // A rejected last trial has overwritten the values.
   if (!current)
   {
     smallest = this->evaluate(p);

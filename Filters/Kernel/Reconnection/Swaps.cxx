@@ -16,6 +16,8 @@ double CavityOperations::triangulate(const EdgeRing& ring, double above)
 {
   const int n = ring.vertices;
   const auto& r = ring.ring;
+  // Dynamic programming over the subpolygons from i to j (Klincsek's algorithm), the shortest
+  // first.
   for (int i = 0; i + 1 < n; ++i)
   {
     this->Best[i][i + 1] = 1.0;
@@ -72,6 +74,7 @@ bool CavityOperations::isFlat(const EdgeRing& ring) const
   const Vec3 e = this->Mesh.point(ring.b) - a, u = this->Mesh.point(ring.ring[0]) - a,
              v = this->Mesh.point(ring.ring[ring.vertices - 1]) - a;
   const Vec3 m = cross(e, u), n = cross(v, e);
+  // The relative length of the cross product is the sine of the angle between the walls.
   return dot(m, n) > 0.0 && norm(cross(m, n)) <= this->flatTolerance * norm(m) * norm(n);
 }
 
@@ -155,12 +158,14 @@ double CavityOperations::extendFaces(
       const PointId opposite = this->Mesh.tet(below).vertices[t.neighbors[top] & 3];
       if (opposite == b)
       {
+        // The exclusive or of all vertices and three of them leaves the fourth.
         const PointId x = t.vertices[0] ^ t.vertices[1] ^ t.vertices[2] ^ t.vertices[3] ^ a ^ u ^ w;
         const double keep =
           std::min(q, std::min(this->Mesh.quality(next), this->Mesh.quality(below)));
         this->Change.before.push_back(next);
         this->Change.before.push_back(below);
         double extended = this->extendFaces(a, b, next, u, x, depth + 1);
+        // The second edge is only extended if the first has not already made the extension worse.
         extended = extended > keep
           ? std::min(extended, this->extendFaces(a, b, next, x, w, depth + 1))
           : -1.0;
@@ -168,6 +173,7 @@ double CavityOperations::extendFaces(
         {
           return extended;
         }
+        // A failed extension must leave no trace before the closing tetrahedron is added.
         this->Change.before.resize(before);
         this->Change.after.resize(after);
         this->Change.qualities.resize(after);

@@ -59,6 +59,7 @@ EdgeShare shareOfEdges(const TetrahedronMesh& mesh)
     const double length = edgeLength(mesh.point(b) - mesh.point(a), mesh.metric(a), mesh.metric(b));
     ++result.edges;
     result.inRange += length >= 1.0 / LongestEdge && length <= LongestEdge;
+    // With the logarithm, edges twice too long and twice too short count equally.
     result.deviation += std::abs(std::log(length));
   }
   result.deviation /= static_cast<double>(std::max<Index>(result.edges, 1));
@@ -93,6 +94,7 @@ std::vector<TetrahedronAdaptation::SizedEdge> TetrahedronAdaptation::edges(bool 
           this->Mesh.point(b) - this->Mesh.point(a), this->Mesh.metric(a), this->Mesh.metric(b));
         if (tooLong ? length > LongestEdge : length < 1.0 / LongestEdge)
         {
+          // Edges are sorted by this value: the negative length puts the longest first.
           found.push_back({ tooLong ? -length : length, a, b });
         }
       }
@@ -226,6 +228,7 @@ bool TetrahedronAdaptation::run()
   {
     const bool complete = this->round(busy);
     const EdgeShare now = shareOfEdges(this->Mesh);
+    // The final sweeps count as two rounds of the progress.
     if (!this->record(static_cast<double>(k + 1) / (MostRounds + 2), now.share()) || !complete)
     {
       return false;

@@ -95,6 +95,7 @@ TetrahedronMesh::TetrahedronMesh(TetrahedronArrays arrays)
       this->PointTet[v] = t;
     }
   }
+  // Slots of input points are not reused: their numbers identify them in the output.
   for (PointId v = this->pointSlots() - 1; v >= this->InputPoints; --v)
   {
     if (!this->used(v))
@@ -148,6 +149,7 @@ Index TetrahedronMesh::labelFaces(const std::vector<TriangleVertices>& faces, bo
       }
     }
   }
+  // Each inner face was found from both of its tetrahedra.
   return sides / 2;
 }
 
@@ -191,6 +193,7 @@ double TetrahedronMesh::metricQuality(const TetVertices& v) const
 {
   const std::vector<Vec3>& x = this->Points;
   const std::vector<MetricTensor>& m = this->Metrics;
+  // Any multiple of a metric gives the same shape: the sum serves as the mean.
   return metricShape(x[v[0]], x[v[1]], x[v[2]], x[v[3]], (m[v[0]] + m[v[1]]) + (m[v[2]] + m[v[3]]));
 }
 
@@ -274,6 +277,7 @@ void TetrahedronMesh::connect(int threads)
 
 std::uint32_t TetrahedronMesh::nextMark()
 {
+  // After 2^32 marks, old values could be mistaken for new ones.
   if (++this->CurrentMark == 0)
   {
     std::fill(this->Mark.begin(), this->Mark.end(), 0);
@@ -295,6 +299,7 @@ void TetrahedronMesh::star(PointId v, std::vector<TetId>& tets)
     for (int k = 0; k < 4; ++k)
     {
       const std::int32_t n = t.neighbors[k];
+      // Only the faces at v lead to other tetrahedra of its star.
       if (t.vertices[k] != v && n != NoId && this->Mark[n >> 2] != mark)
       {
         this->Mark[n >> 2] = mark;
@@ -351,6 +356,7 @@ void TetrahedronMesh::ring(TetId t, int i, int j, EdgeRing& ring) const
     }
     ring.ring[ring.size] = front;
     const TetVertices& v = this->Tets[across].vertices;
+    // The exclusive or cancels the edge and the shared ring vertex, and leaves the new one.
     const PointId next = v[0] ^ v[1] ^ v[2] ^ v[3] ^ ring.a ^ ring.b ^ front;
     current = across;
     back = front;
@@ -485,6 +491,7 @@ void TetrahedronMesh::movePoint(
 void TetrahedronMesh::FaceTable::reset(std::size_t faces)
 {
   std::size_t size = 64;
+  // At most half of the entries are filled, which keeps the probe sequences short.
   while (size < 2 * faces)
   {
     size *= 2;
@@ -495,6 +502,7 @@ void TetrahedronMesh::FaceTable::reset(std::size_t faces)
   }
   else
   {
+    // Most operations are small: clearing the whole table would dominate their cost.
     for (std::int32_t i : this->Filled)
     {
       this->Entries[i].key[0] = NoId;
@@ -510,6 +518,7 @@ TetrahedronMesh::FaceEntry& TetrahedronMesh::FaceTable::find(TriangleVertices& k
   const std::uint32_t hash = static_cast<std::uint32_t>(key[0]) * p0 ^
     static_cast<std::uint32_t>(key[1]) * p1 ^ static_cast<std::uint32_t>(key[2]) * p2;
   const std::size_t mask = this->Entries.size() - 1;
+  // The mask keeps only low bits: the high bits are mixed in first.
   std::size_t i = (hash ^ (hash >> 15)) & mask;
   while (this->Entries[i].key[0] != NoId && this->Entries[i].key != key)
   {
@@ -571,12 +580,14 @@ bool TetrahedronMesh::match(const Replacement& replacement)
       this->LinkLabels[k][i] = given;
       if (entry.key[0] == NoId)
       {
+        // An inner face of the replacement is linked when its second side is found.
         entry = { key, -2 - own, given, false };
         this->Links[k][i] = NoId;
         continue;
       }
       if (entry.matched)
       {
+        // A third side would make the face nonmanifold.
         return false;
       }
       entry.matched = true;

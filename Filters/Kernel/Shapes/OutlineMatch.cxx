@@ -167,6 +167,7 @@ public:
   {
     if (!this->Options.bounds)
     {
+      // Bounds that exclude no placement make the search exhaustive, for comparison.
       for (Step& step : this->Steps)
       {
         std::fill(step.inside.values.begin(), step.inside.values.end(), -Unreachable);
@@ -212,12 +213,17 @@ private:
   ChainTable edgeCosts(Index v) const
   {
     const double expected = this->Source.advance[v];
+    // The advance of an edge may differ from its share of the outline by the factor `stretch`
+    // either way.
     const Index low =
       std::max<Index>(1, static_cast<Index>(std::ceil(expected / this->Options.stretch - 0.5)));
+    // Each of the other edges advances by at least one location.
     const Index most = this->Count - (this->Vertices - 1);
     const Index high =
       std::min(most, static_cast<Index>(std::floor(expected * this->Options.stretch + 0.5)));
     ChainTable table(std::min(low, most), high, this->Count, this->Memory);
+    // The target has several descriptors per location, so that samples inside an edge find a close
+    // one.
     const Index fine = static_cast<Index>(this->Target.descriptors.size()) / OutlineChannels;
     const Index perLocation = fine / this->Count;
     // The differences between the descriptors of each edge sample and each location.
@@ -237,6 +243,8 @@ private:
       }
       std::copy_n(sums, fine, sums + fine); // twice around
     }
+    // Edges count by their length; the factor Vertices cancels when the energy is divided by the
+    // number of vertices.
     const float weight = static_cast<float>(this->Options.descriptor * expected /
       static_cast<double>(this->Count) * static_cast<double>(this->Vertices) / DescriptorSamples);
     for (Index a = table.low; a <= table.high; ++a)
@@ -283,6 +291,7 @@ private:
     for (Step& step : this->Steps)
     {
       const ChainTable &left = this->inside(step.left), &right = this->inside(step.right);
+      // A chain leaves at least one location for the rest of the outline.
       step.inside = ChainTable(left.low + right.low,
         std::min(left.high + right.high, this->Count - 1), this->Count, this->Memory);
       this->join(left, right, step.inside);
@@ -307,6 +316,7 @@ private:
     ChainTable result(like.low, like.high, this->Count, this->Memory);
     for (Index a = like.low; a <= like.high; ++a)
     {
+      // The rest begins where the chain ends, at p + a, and covers the other locations.
       const Index other = this->Count - a;
       if (other >= rest.low && other <= rest.high)
       {
@@ -321,6 +331,7 @@ private:
   void boundOutside(float limit)
   {
     Step& last = this->Steps.back();
+    // A lower bound suffices here, as it only limits the advances that are considered.
     last.outside.least = this->inside(this->Rest).least;
     if (this->Rest >= 0)
     {
@@ -328,6 +339,8 @@ private:
       rest.outside = this->complement(last.inside, rest.inside);
       rest.outside.least = last.inside.least;
     }
+    // Backward: the complement of a chain follows from the complement of the chain that contains
+    // it.
     for (std::size_t s = this->Steps.size(); s-- > 0;)
     {
       const Step& step = this->Steps[s];
@@ -353,6 +366,7 @@ private:
     ChainTable& out = this->Steps[partChain].outside;
     out = ChainTable(part.low, part.high, this->Count, this->Memory);
     out.least = other.least + whole.least;
+    // Advances that are too expensive even with the cheapest complement are skipped.
     const auto [lowPart, highPart] = part.affordable(limit - out.least);
     const auto [lowOther, highOther] = other.affordable(limit - part.least - whole.least);
     for (Index a = lowPart; a <= highPart; ++a)
@@ -364,6 +378,8 @@ private:
         continue;
       }
       const Index count = last - first + 1;
+      // If the part comes second, the other chain starts b locations before p; adding Count avoids
+      // negative positions.
       const Index shift = partFirst ? a : this->Count - first, each = partFirst ? 0 : -1;
       leastSums(other.row(first) + shift, other.stride + each,
         whole.row(a + first) + (partFirst ? 0 : shift), whole.stride + each, count, this->Count,
@@ -420,6 +436,8 @@ private:
       const Index last = std::min(left.high, a - right.low);
       for (Index p = 0; p < this->Count; p += FloatWidth)
       {
+        // The rest of the polygon costs at least `outside`; the chain and its triangle have to fit
+        // into the remaining budget.
         const FloatPacket most = limit - loadFloats(step.outside.row(a) + p);
         if (!anyOf(loadFloats(step.inside.row(a) + p) < most))
         {
@@ -434,6 +452,8 @@ private:
         {
           const FloatPacket parts =
             loadFloats(left.row(b) + p) + loadFloats(right.row(a - b) + p + b);
+          // The costs without the triangle are a lower bound, so the triangle is only evaluated if
+          // the sum may improve the best.
           if (!anyOf(parts < best))
           {
             continue;
@@ -466,11 +486,14 @@ private:
   {
     const FloatPacket sum = max(ij + ik + jk, broadcast(MinLength));
     const FloatMask flat = size <= FlatArea * (sum * sum);
+    // |A|^2 / (2 det A) of the map A from the source triangle, where |A|^2 is a weighted sum of
+    // squared edge lengths (cotangent formula).
     const FloatPacket norm =
       t.weights[0] * (ij * ij) + t.weights[1] * (ik * ik) + t.weights[2] * (jk * jk);
     FloatPacket k =
       select(flat, broadcast(FlatAnisotropy), norm / select(flat, broadcast(1.0f), size));
     k = min(max(k, broadcast(1.0f)), broadcast(FlatAnisotropy));
+    // acosh(k) is the logarithm of the ratio of the singular values of A.
     const FloatPacket anisotropy = log(k + sqrt(k * k - 1.0f));
     return t.deformation * (anisotropy * anisotropy) + t.distortion * abs(log(sum) - t.logLength);
   }
@@ -519,6 +542,8 @@ OutlineMatch matchOutlines(const OutlineModel& source, const OutlineModel& targe
     const bool first = mirror.bound() < upright.bound();
     energy = (first ? mirror : upright).run(all);
     const float other = (first ? upright : mirror).run(energy);
+    // The mirror image wins if it came first and stayed the best, or if it came second and was
+    // better.
     match.mirrored = first != (other < energy);
     energy = std::min(energy, other);
   }

@@ -73,6 +73,7 @@ std::vector<Vec2> smoothed(const std::vector<Vec2>& points, double sigma)
   {
     for (Index k = 0; k <= 2 * radius; ++k)
     {
+      // The radius may exceed the number of points, so a single modulo is not enough.
       const Vec2& p = points[((i + k - radius) % n + n) % n];
       result[i][0] += weights[k] / sum * p[0];
       result[i][1] += weights[k] / sum * p[1];
@@ -116,12 +117,14 @@ Heights heightsAt(const Curve& curve, double s)
   const double length = std::max(distance(a, b), 1e-12);
   const double tx = (b[0] - a[0]) / length, ty = (b[1] - a[1]) / length;
   Heights heights = {};
+  // The heights at equal distances along the curve, without the point itself, whose height is 0.
   for (Index k = 1; k < bins; ++k)
   {
     for (int q = -(HeightSamples / 2); q <= HeightSamples / 2; ++q)
     {
       const Vec2 p = curve.at(s +
         (static_cast<double>(HeightSamples * k) + q) / static_cast<double>(HeightSamples * bins));
+      // The scalar product with the left normal of the tangent (tx, ty).
       heights[k - 1] += (tx * (p[1] - origin[1]) - ty * (p[0] - origin[0])) / HeightSamples;
     }
   }
@@ -150,6 +153,7 @@ public:
         square[k] += heights[k] * heights[k] / static_cast<double>(count);
       }
     }
+    // The complexity is the mean deviation of the heights relative to the largest height.
     for (Index k = 0; k < OutlineHeights; ++k)
     {
       const double deviation = std::sqrt(std::max(0.0, square[k] - mean[k] * mean[k]));
@@ -176,6 +180,7 @@ public:
         (1.0 - this->Region) * this->Weight[k] / this->WeightSum * heights[k] / this->Scale[k]));
     }
     const Vec2 p = this->OfCurve.at(s);
+    // Regions are measured in the mask, hence in pixels.
     const Vec2 pixel = { p[0] * this->OfCurve.length + this->OfCurve.centre[0],
       p[1] * this->OfCurve.length + this->OfCurve.centre[1] };
     const Descriptor regions = describe(this->Shape, { pixel })[0];
@@ -210,6 +215,8 @@ double arcOf(const Curve& curve, const Vec2& p)
     if (d < nearest)
     {
       nearest = d;
+      // The points of the curve are equidistant, so that the index is proportional to the arc
+      // length.
       arc = (static_cast<double>(i) + t) / static_cast<double>(n);
     }
   }

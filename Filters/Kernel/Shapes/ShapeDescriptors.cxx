@@ -34,6 +34,7 @@ std::vector<Descriptor> describe(const Silhouette& shape, const std::vector<Vec2
     Descriptor d = {};
     for (int k = 0; k < 4; ++k)
     {
+      // A disk of at least one pixel, as smaller ones may contain no pixel center.
       const double radius = std::max(1.0, DescriptorRadii[k] * shape.maxDistance);
       double area = 0.0;
       const Index first = static_cast<Index>(std::ceil(std::max(0.0, p[1] - radius)));

@@ -130,6 +130,8 @@ PairTable PlacementSolver::take(Index from, Index to)
     const PairTable& table = *this->Problem.edges[to];
     return this->Problem.symmetricEdges ? table : transpose(table);
   }
+  // The table of an inner edge was made by the step that eliminated the part of the polygon behind
+  // it.
   auto found = this->Pending.find({ from, to });
   const bool turned = found == this->Pending.end();
   if (turned)
@@ -166,6 +168,8 @@ bool PlacementSolver::run()
   const PolygonMesh& mesh = *this->Problem.mesh;
   const std::size_t n = mesh.elimination.size();
   this->Steps.reserve(n);
+  // Floor is the sum of the minima of all tables not yet combined: a lower bound of their total
+  // cost.
   for (const PairTable* edge : this->Problem.edges)
   {
     this->Floor += minimumOf(edge->values.data(), static_cast<Index>(edge->values.size()));
@@ -178,6 +182,7 @@ bool PlacementSolver::run()
       TriangleTerms(mesh.points[i], mesh.points[j], mesh.points[k], this->Problem.energy,
         this->Problem.delta) });
     Step& step = this->Steps.back();
+    // Both tables are combined in this step, so the floor no longer includes them.
     for (const PairTable* part : { &step.fromI, &step.fromJ })
     {
       this->Floor -= minimumOf(part->values.data(), static_cast<Index>(part->values.size()));
@@ -292,6 +297,7 @@ public:
     this->LengthIJ = &ij;
     this->LengthIK = &ik;
     this->LengthJK = &jk;
+    // For the screen, the share of edge j-k in the norm of the map is computed once for all p.
     if (this->Screen)
     {
       this->NormJ = jk;
@@ -344,6 +350,7 @@ public:
         visit(q, scratch.tried[q]);
       }
     }
+    // The outer loop runs over the locations r, because the data of p and r are shared by all q.
     for (Index row = 0; row < sk.rows; ++row)
     {
       const Index r = row * FloatWidth;
@@ -358,6 +365,8 @@ public:
         {
           continue;
         }
+        // The remaining budget in units of the deformation weight: larger squared anisotropies
+        // cannot win.
         const float value = best[q] * this->Inverse;
         if (!this->Screen || value > TriangleTerms::MaxLog2 ||
           mayStayBelow<Mirrored>(edges[q], rx, ry,
@@ -473,12 +482,14 @@ public:
     const float bx = this->StepX * static_cast<float>(dx),
                 by = this->StepY * static_cast<float>(dy);
     const BaseEdge base(this->Terms, bx, by, 0.0f, 0.0f, std::sqrt(bx * bx + by * by));
+    // The length of the edge i-j alone bounds the cost of its triangle from below.
     if (this->Bounds && this->Terms.bound(base.length) >= this->Limit)
     {
       return;
     }
     this->fillSlice<Distortion, Rotation, Mirrored>(base, slice);
     Index guess = 0;
+    // Only locations p for which q = p + offset is also in the grid.
     const Index endY = std::min(this->Rows, this->Rows - dy);
     const Index endX = std::min(this->Columns, this->Columns - dx);
     for (Index py = std::max<Index>(0, -dy); py < endY; ++py)
@@ -528,6 +539,8 @@ private:
   {
     const Index width = this->Width;
     const float *partI = this->FromI.row(p), *partJ = this->FromJ.row(q);
+    // A slice starts at the offsets 1 - rows and 1 - columns, so this is the cost for the first
+    // location r.
     const float* costs = slice.costs.row(this->Rows - 1 - py) + this->Columns - 1 - px;
     float best = this->Limit;
     const auto visit = [&](Index row)
@@ -618,6 +631,8 @@ std::vector<Index> PlacementSolver::trace(Index p, Index q) const
   dispatch(this->Problem.energy,
     [&](auto distortion, auto rotation, auto mirrored)
     {
+      // In reverse order, the parents of an eliminated vertex are already placed; recomputing its
+      // best location saves a table of choices.
       for (auto step = this->Steps.rbegin(); step != this->Steps.rend(); ++step)
       {
         const EliminationStep& e = step->elimination;
@@ -628,6 +643,8 @@ std::vector<Index> PlacementSolver::trace(Index p, Index q) const
         const float px = si.x[i], py = si.y[i], qx = sj.x[j], qy = sj.y[j];
         const BaseEdge base(
           step->terms, qx, qy, px, py, std::sqrt((qx - px) * (qx - px) + (qy - py) * (qy - py)));
+        // The limit is above the sum of three unreachable costs, so that a location is always
+        // found.
         float best = 4.0f * Unreachable;
         Index slot = sk.used.front();
         for (Index c = 0; c < sk.size(); c += FloatWidth)

@@ -56,6 +56,7 @@ void check(const MatchOptions& options)
 
 double orderingCost(double from, double to, double expected)
 {
+  // Positions along the contour are fractions of its length, so that advances wrap around at 1.
   double advance = to - from;
   advance -= std::floor(advance);
   // A step of length 0 is treated as a hundredth of the expected one.
@@ -152,6 +153,7 @@ public:
       // The coarse locations are some of the full ones: the best is no worse.
       const double energy =
         this->Target.arc.empty() ? first.energy : this->improved(problem, first.points);
+      // The margin covers the rounding of tables in single precision.
       problem.limit = static_cast<float>(energy * (1.0 + 1e-4) + 1e-4);
     }
     problem.progress = this->Progress;
@@ -275,6 +277,8 @@ private:
       at.push_back(std::find(all.begin(), all.end(), p) - all.begin());
     }
     double energy = 0.0;
+    // Each pass solves the problem exactly on the few locations around each vertex, which include
+    // the current one: the energy cannot increase.
     for (int pass = 0; pass < LocalPasses; ++pass)
     {
       PlacementProblem problem = this->emptyProblem();
@@ -422,6 +426,8 @@ private:
         }
       }
     }
+    // The tables are in single precision, so the energy of the selected placement is recomputed in
+    // double precision.
     ShapeMatch match = this->evaluate(points);
     match.rank = rank;
     match.centreAccepted = accepted;
@@ -444,6 +450,8 @@ private:
       {
         const std::size_t a = static_cast<std::size_t>(t[c]),
                           b = static_cast<std::size_t>(t[(c + 1) % 3]);
+        // Boundary edges join consecutive vertices, and counterclockwise triangles have each of
+        // them in this direction only.
         if ((a + 1) % n == b)
         {
           terms.edge += this->Target.edgeCost(points[a], points[b]);
@@ -525,7 +533,9 @@ private:
         tables.push_back(this->Target.edgeTable(sets[v], sets[(v + 1) % n]));
         problem.edges.push_back(&tables[v]);
       }
+      // The current placement is among the candidates, so its energy is a valid limit.
       problem.limit = static_cast<float>(match.energy * (1.0 + 1e-4) + 1e-4);
+      // Refined locations have no descriptors and no position on the contour.
       problem.energy.ordering = problem.energy.descriptor = 0.0;
       if (this->Progress)
       {
@@ -539,6 +549,7 @@ private:
       }
       const Index rank = match.rank;
       ShapeMatch next = this->choose(problem, solver, false);
+      // A lower energy does not justify losing an accepted center.
       if (next.energy < match.energy && (next.centreAccepted || !match.centreAccepted))
       {
         match = next;
@@ -604,6 +615,7 @@ ShapeMatch matchShape(
   check(options);
   checkPrepared(source, target, options);
   const Stopwatch time;
+  // delta makes the distortion cost invariant to uniform scaling (dissertation, Section 5.2.3).
   const double delta = source.maxDistance / target.maxDistance();
   const Index mirrors = options.energy.reflection == Reflection::Whole ? 2 : 1;
   const double runs = static_cast<double>(mirrors * options.rotations * options.scales);
@@ -644,6 +656,7 @@ ShapeMatch matchShape(
       }
       for (Index scale = 0; scale < options.scales && !over(); ++scale)
       {
+        // Sizes differ by factors of sqrt(2); the middle one is 1.
         const double factor = std::pow(2.0, 0.5 * static_cast<double>(scale - options.scales / 2));
         ShapeMatch match = Matcher(*shape, target, options, delta / factor, progress).run();
         match.mirrored = mirror == 1;
@@ -654,6 +667,7 @@ ShapeMatch matchShape(
           // Restore the order of the source vertices and triangles.
           std::reverse(match.points.begin(), match.points.end());
         }
+        // An accepted center takes precedence over a lower energy.
         const bool better = !found ||
           (match.centreAccepted != best.centreAccepted ? match.centreAccepted
                                                        : match.energy < best.energy);

@@ -32,6 +32,7 @@ ShapeSource transformSource(const ShapeSource& source, double angle, bool mirror
   {
     return result;
   }
+  // A mirror image is clockwise: reversing the order of the vertices restores the orientation.
   const Index n = static_cast<Index>(source.mesh.points.size());
   const auto flip = [n](Index v) { return n - 1 - v; };
   std::reverse(result.mesh.points.begin(), result.mesh.points.end());
@@ -144,6 +145,8 @@ TriangleEnergy triangleEnergy(const std::array<Vec2, 3>& source, const std::arra
   TriangleEnergy terms;
   const double size = energy.reflection == Reflection::Free ? std::abs(detT) : detT;
   const double longest = std::max(lengthT, static_cast<double>(MinLength));
+  // k = (s1 / s2 + s2 / s1) / 2 for the singular values s1 and s2; flat triangles have the same
+  // value as in the tables.
   double k = FlatAnisotropy;
   if (size > FlatArea * longest * longest && small > 0.0)
   {
@@ -155,6 +158,7 @@ TriangleEnergy triangleEnergy(const std::array<Vec2, 3>& source, const std::arra
   terms.distortion = energy.signedDistortion
     ? std::abs(growth + std::log(delta))
     : std::abs(std::abs(growth) - std::abs(std::log(delta)));
+  // (a0 + a3) / u is the cosine of the angle of the rotation in the polar decomposition of A.
   terms.rotation = u > 0.0 ? 1.0 - (a[0] + a[3]) / u : 1.0;
   return terms;
 }

@@ -122,6 +122,7 @@ void ritzValues(const LinearSystem& system, const ConditionOptions& options,
   solverOptions.maximumSeconds = options.maximumSeconds;
   solverOptions.petscOptions = options.petscOptions;
   solverOptions.ritzValues = true;
+  // The number of iterations is unknown in advance, so the reported progress approaches 1.
   solverOptions.observer = [&](int iteration, double)
   { return !test.stop(iteration / (iteration + 100.0)); };
   LinearSolver solver(system, solverOptions);
@@ -159,6 +160,7 @@ ExtremeEigenvalues preconditionedExtremeEigenvalues(const LinearSystem& system,
   LinearSolverState& own = solver.state();
   const PetscScope scope(own.OptionSet.database());
   ExtremeEigenvalues extremes;
+  // `Exact` is the initial value, which means that nothing has failed.
   if (own.Failure != SolveReason::Exact)
   {
     extremes.smallest.message = extremes.largest.message = own.FailureText;
@@ -196,6 +198,7 @@ ExtremeEigenvalues plainExtremeEigenvalues(const LinearSystem& system, const Pet
     matrix = scaled;
   }
   extremes = slepcExtremeEigenvalues(matrix, system, objects.ranks(), options, optionSet, test);
+  // If y is an eigenvector of the scaled matrix, D^-1/2 y is one of D^-1 A.
   if (roots)
   {
     for (ExtremeEigenvalue* extreme : { &extremes.smallest, &extremes.largest })
@@ -237,6 +240,8 @@ ConditionEstimate estimate(
   ConditionEstimate result;
   try
   {
+    // Without a preconditioner or with Jacobi, the matrix can be made symmetric explicitly, so that
+    // the methods of SLEPc apply.
     const bool plain = options.preconditioner == Preconditioner::None ||
       (options.preconditioner == Preconditioner::Jacobi &&
         options.petscOptions.find("-pc_") == std::string::npos);
@@ -282,6 +287,7 @@ ConditionEstimate estimateCondition(const LinearSystem& system, const ConditionO
     std::atomic<bool> begun{ false };
     ConditionEstimate result;
   };
+  // Watched work may continue after this function has returned, so it owns its data.
   const auto job = std::make_shared<Job>();
   job->system = petscWatchable(limits) ? owned(system) : system;
   job->options = options;

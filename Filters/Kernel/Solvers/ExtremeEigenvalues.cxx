@@ -17,10 +17,12 @@ bool EigensolverStoppingTest::userStops(double fraction)
 {
   try
   {
+    // The caller has stopped waiting, so the result is not needed any more.
     if (this->Work && this->Work->abandoned())
     {
       return true;
     }
+    // On several ranks, an exception on one of them would leave the others in a collective call.
     if (!this->Work && this->System.ranks() == 1)
     {
       throwIfInterrupted();
@@ -57,6 +59,7 @@ bool EigensolverStoppingTest::userStops(double fraction)
 bool EigensolverStoppingTest::stop(double fraction)
 {
   const bool aborted = this->Aborted || this->userStops(fraction);
+  // Ranks have to agree on the end; this needs a collective call only if one of them can abort.
   if (this->System.ranks() == 1)
   {
     this->Aborted = aborted;
@@ -96,6 +99,8 @@ void fillStartVector(Vec vector, std::uint64_t seed)
   petsc(VecGetArrayWrite(vector, &values));
   for (PetscInt row = begin; row < end; ++row)
   {
+    // A value per global row makes the vector independent of the number of ranks; all entries are
+    // positive, like the lowest mode.
     const std::uint64_t state =
       (static_cast<std::uint64_t>(row) + 1 + (seed << 40)) * SplitMix::Increment;
     values[row - begin] = SplitMix::unit(SplitMix::hash(state)) + 0.25;

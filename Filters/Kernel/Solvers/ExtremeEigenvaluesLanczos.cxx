@@ -51,6 +51,7 @@ public:
   {
     petsc(MatMult(this->Matrix, this->U, this->W));
     petsc(VecDot(this->U, this->W, &this->Alpha));
+    // The three-term recurrence: W becomes W - alpha V - beta Previous.
     petsc(VecAXPBYPCZ(this->W, -this->Alpha, -this->Beta, 1.0, this->V, this->Previous));
     std::swap(this->Previous, this->V);
     std::swap(this->V, this->W);
@@ -64,6 +65,8 @@ private:
     PetscReal square = 0.0;
     petsc(PCApply(this->Preconditioner, this->V, this->U));
     petsc(VecDot(this->V, this->U, &square));
+    // Rounding may make the square slightly negative, relative to the last entries of the
+    // tridiagonal matrix.
     const double scale = std::max(std::abs(this->Alpha), this->Beta);
     this->Failed = !std::isfinite(square) || !std::isfinite(this->Alpha) ||
       square < -ZeroTolerance * scale * scale;
@@ -73,6 +76,7 @@ private:
       petsc(VecScale(this->V, 1.0 / this->Beta));
       petsc(VecScale(this->U, 1.0 / this->Beta));
     }
+    // The norm of the start vector is not an entry of the matrix.
     if (this->Previous0)
     {
       this->Previous0 = false;
@@ -135,6 +139,8 @@ void measure(Mat matrix, PC preconditioner, const PetscVector& y, const Candidat
   petsc(VecDuplicate(y, x.out()));
   petsc(VecDuplicate(y, r.out()));
   petsc(VecDuplicate(y, z.out()));
+  // x = P^-1 y is the eigenvector; the norm of its residual A x - lambda y in P^-1 bounds the
+  // error.
   PetscReal energy = 0.0, mass = 0.0, square = 0.0;
   petsc(PCApply(preconditioner, y, x));
   petsc(MatMult(matrix, x, r));
@@ -200,6 +206,7 @@ FirstPass findCandidates(
     ++pass.steps;
     t.diagonal.push_back(recurrence.alpha());
     scale = std::max({ scale, std::abs(recurrence.alpha()), recurrence.beta() });
+    // If beta vanishes, the subspace is invariant, and its Ritz values are exact eigenvalues.
     const bool invariant = recurrence.beta() <= ZeroTolerance * scale;
     const bool stop =
       test.stop(static_cast<double>(pass.steps) / static_cast<double>(pass.steps + ManySteps));
@@ -209,6 +216,7 @@ FirstPass findCandidates(
       const double beta = invariant ? 0.0 : recurrence.beta();
       update(pass.high, t, false, beta, options.tolerance, scale);
       update(pass.low, t, true, beta, options.tolerance, scale);
+      // A check costs more with each step, so the intervals grow.
       nextCheck = pass.steps + std::max<Index>(4, pass.steps / 10);
       if (last || (pass.low.converged && pass.high.converged))
       {
@@ -228,6 +236,8 @@ bool gatherVectors(
   const std::size_t steps = std::max(low.size(), high.size());
   petsc(VecSet(yLow, 0.0));
   petsc(VecSet(yHigh, 0.0));
+  // The start vector is the same, so the recurrence repeats exactly and its vectors need not be
+  // stored.
   recurrence.restart();
   for (std::size_t k = 0; k < steps; ++k)
   {
@@ -269,6 +279,7 @@ ExtremeEigenvalues lanczosExtremeEigenvalues(
       "The preconditioner is not symmetric: the eigenvalues of P^-1 A need not be real.");
   }
   Recurrence recurrence(matrix, preconditioner);
+  // The second pass repeats the steps of the first, so each is half of the work.
   test.stage(0.0, 0.5);
   const FirstPass pass = findCandidates(recurrence, options, test);
   if (pass.failed)

@@ -96,6 +96,8 @@ void collect(Mat matrix, EPS solver, bool smallest, ExtremeEigenvalue& extreme)
   }
   PetscReal length = 0.0;
   petsc(EPSGetEigenvector(solver, best, x, nullptr));
+  // The Rayleigh quotient and its residual refer to the matrix itself, also after a spectral
+  // transformation.
   petsc(VecNormalize(x, nullptr));
   petsc(MatMult(matrix, x, r));
   petsc(VecDot(x, r, &extreme.value));
@@ -170,6 +172,7 @@ ExtremeEigenvalues slepcExtremeEigenvalues(Mat matrix, const LinearSystem& syste
       ST transformation = nullptr;
       KSP inner = nullptr;
       PC pc = nullptr;
+      // Two eigenvalues are requested, because the distance between them sharpens the error bound.
       create(matrix, options, test, std::min<PetscInt>(2, rows), solver);
       petsc(EPSGetST(solver, &transformation));
       if (factorize)
@@ -179,6 +182,7 @@ ExtremeEigenvalues slepcExtremeEigenvalues(Mat matrix, const LinearSystem& syste
         LinearSystem symmetric = system;
         symmetric.symmetric = true;
         symmetric.positiveDefinite = false;
+        // The eigenvalues of A nearest to 0 are the largest of A^-1.
         petsc(EPSSetType(solver, EPSKRYLOVSCHUR));
         petsc(STSetType(transformation, STSINVERT));
         petsc(EPSSetTarget(solver, 0.0));
@@ -196,6 +200,7 @@ ExtremeEigenvalues slepcExtremeEigenvalues(Mat matrix, const LinearSystem& syste
       }
       else
       {
+        // A matrix that is too large to factorize: LOBPCG only needs products and a preconditioner.
         petsc(EPSSetType(solver, EPSLOBPCG));
         petsc(EPSLOBPCGSetBlockSize(solver, std::min(Block, rows)));
         petsc(EPSSetWhichEigenpairs(solver, EPS_SMALLEST_REAL));
@@ -209,6 +214,7 @@ ExtremeEigenvalues slepcExtremeEigenvalues(Mat matrix, const LinearSystem& syste
       }
       optionSet.read([&]() { petsc(EPSSetFromOptions(solver)); });
       petsc(EPSSetUp(solver));
+      // Inner solvers read their options during the setup.
       optionSet.rejectUnused(true);
       petsc(EPSSolve(solver));
       if (factorize)

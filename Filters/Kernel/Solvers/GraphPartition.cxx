@@ -29,6 +29,8 @@ std::vector<std::pair<Index, Index>> neighbours(const Mesh& mesh)
   facets.forEachFacet(
     [&](Index, const FacetUse* uses, Index count)
     {
+      // If more than two cells share a facet, edges between consecutive ones suffice to connect
+      // them.
       for (Index i = 1; i < count; ++i)
       {
         pairs.emplace_back(uses[i - 1].cell, uses[i].cell);
@@ -44,6 +46,7 @@ std::vector<std::pair<Index, Index>> neighbours(const Mesh& mesh)
 PetscInt* petscArray(std::size_t size)
 {
   PetscInt* array = nullptr;
+  // An additional entry, because PETSc returns null for an empty array.
   petsc(PetscMalloc1(size + 1, &array));
   return array;
 }
@@ -124,11 +127,13 @@ PointGraph pointGraph(const DistributedMesh& mesh)
   {
     own += mesh.owned(p);
   }
+  // PETSc requires that the owned points are numbered consecutively, rank by rank.
   const auto counts = mesh.group().gatherItems(std::vector<Index>{ own });
   for (int rank = 0; rank < mesh.group().rank(); ++rank)
   {
     first += counts[rank][0];
   }
+  // Halo exchanges send doubles, which represent these integers exactly.
   std::vector<double> numbers(mesh.localPoints(), 0.0);
   for (Index p = 0; p < mesh.localPoints(); ++p)
   {
@@ -166,6 +171,7 @@ PointGraph pointGraph(const DistributedMesh& mesh)
         around.erase(std::unique(around.begin(), around.end()), around.end());
         graph.neighbours.insert(graph.neighbours.end(), around.begin(), around.end());
         graph.offsets.push_back(static_cast<Index>(graph.neighbours.size()));
+        // The work of a point is about proportional to the number of its cells.
         graph.weights.push_back(cells.offsets[p + 1] - cells.offsets[p]);
       }
     });
@@ -250,6 +256,7 @@ std::vector<int> partitionPoints(const DistributedMesh& mesh, Communicator commu
     throwNotDivided(error);
   }
   std::vector<double> owners(mesh.localPoints(), 0.0);
+  // The parts have the order of the owned points.
   auto part = parts.begin();
   for (Index p = 0; p < mesh.localPoints(); ++p)
   {

@@ -34,6 +34,7 @@ void InnerSolver::apply(const double* r, double* z)
   PetscVector right = own.Objects.createVector(), left = own.Objects.createVector();
   PC inner = nullptr;
   own.Objects.copyIn(r, right);
+  // Only the preconditioner is applied: a multigrid cycle, or the substitutions of a factorization.
   petsc(KSPGetPC(own.Solver, &inner));
   petsc(PCApply(inner, right, left));
   own.Objects.copyOut(left, z);

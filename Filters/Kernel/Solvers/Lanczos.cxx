@@ -73,6 +73,8 @@ void orthogonalize(
   const std::vector<std::vector<double>>& basis, Index count, std::vector<double>& w, int threads)
 {
   const auto n = static_cast<Index>(w.size());
+  // Classical Gram-Schmidt: all coefficients refer to the same w, so that the chunks are
+  // independent.
   std::vector<double> partial(chunksOf(n) * count), coefficients(count, 0.0);
   forEachPiece(n, threads,
     [&](Index chunk, Index begin, Index end)
@@ -82,6 +84,7 @@ void orthogonalize(
         partial[chunk * count + j] = sumOf(basis[j].data(), w.data(), begin, end);
       }
     });
+  // The order of the chunks is fixed, so the sums do not depend on the number of threads.
   for (Index chunk = 0; chunk < chunksOf(n); ++chunk)
   {
     for (Index j = 0; j < count; ++j)
@@ -112,6 +115,7 @@ std::vector<double> combine(const std::vector<std::vector<double>>& basis,
   forEachPiece(n, threads,
     [&](Index, Index begin, Index end)
     {
+      // A piece of the result stays in the cache while all vectors are added to it.
       for (std::size_t j = 0; j < weights.size(); ++j)
       {
         for (Index i = begin; i < end; ++i)
@@ -215,6 +219,7 @@ Spectrum extremeEigenvalues(const SparseMatrix& matrix, const LanczosOptions& op
     t.beside.push_back(beta);
     scale(w, 1.0 / beta);
   }
+  // The last beta couples to a vector that was not used, and is not part of the matrix.
   t.beside.resize(t.diagonal.size() - 1);
   spectrum.smallest = low.value;
   spectrum.largest = high.value;
@@ -255,6 +260,8 @@ public:
   /// A step of length `step`; `ratio` is the ratio of the products (r, B r) after and before it.
   void add(double step, double ratio)
   {
+    // The coefficients of CG determine the Lanczos matrix (Y. Saad, "Iterative Methods for Sparse
+    // Linear Systems", Section 6.7.3).
     this->T.diagonal.push_back(1.0 / step + this->Last);
     this->T.beside.push_back(std::sqrt(ratio) / step);
     this->Last = ratio / step;

@@ -61,6 +61,7 @@ LinearSystem owned(const LinearSystem& system)
   {
     return system;
   }
+  // Without an owner, the caller may free the matrix while abandoned work still uses it.
   const auto copies = std::make_shared<Copies>();
   LinearSystem own = system;
   copies->matrix = *system.matrix;
@@ -78,10 +79,14 @@ LinearSystem owned(const LinearSystem& system)
 WatchLimits hardLimits(
   double maximumSeconds, const std::function<bool()>& cancelled, const LinearSystem& system)
 {
+  // One rank cannot abandon a collective operation alone, so there are no hard limits on several
+  // ranks.
   if (system.numbering && system.numbering->ranks() > 1)
   {
     return { 0.0, nullptr, false };
   }
+  // The solver tests its own limit between iterations; the watchdog only ends a single step that
+  // takes longer.
   constexpr double fraction = 0.1, least = 0.5, most = 5.0;
   const double grace = std::clamp(fraction * maximumSeconds, least, most);
   return { maximumSeconds > 0.0 ? maximumSeconds + grace : 0.0, cancelled };
@@ -214,6 +219,7 @@ LinearSolution LinearSolver::solve(const double* b, double* x)
   const Index n = state->Objects.localSize();
   const bool watched = petscWatchable(limits);
   const double* const given = b;
+  // Watched work may outlive the arrays of the caller, so it gets copies.
   if (watched)
   {
     job->b.assign(b, b + n);

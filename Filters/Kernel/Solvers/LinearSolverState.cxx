@@ -142,6 +142,7 @@ LinearSolverState::LinearSolverState(const LinearSystem& system, const SolverOpt
 
 LinearSolverState::~LinearSolverState()
 {
+  // Since the test was taken, PETSc may have been finalized and initialized again.
   if (this->DestroyTest && petscUsable() && this->Generation == petscGeneration())
   {
     destroyContext(this->DestroyTest, this->TestContext);
@@ -224,6 +225,7 @@ void LinearSolverState::configure()
   {
     petsc(KSPSetComputeSingularValues(this->Solver, PETSC_TRUE));
   }
+  // Defaults apply only where the user's options have no value.
   for (const PetscOption& option : parsePetscOptions(this->Options.defaultPetscOptions))
   {
     this->OptionSet.setDefault(option.name, option.value);
@@ -272,6 +274,8 @@ PetscErrorCode LinearSolverState::test(
   self.Residuals.push_back(norm);
   const PetscErrorCode code =
     self.Test(solver, iteration - self.Before, norm, reason, self.TestContext);
+  // PETSc has no reason for an abort, so the iteration limit stands for it; shouldStop() records
+  // the actual reason.
   if (code == 0 && *reason == KSP_CONVERGED_ITERATING && self.shouldStop(iteration, norm))
   {
     *reason = KSP_DIVERGED_ITS;
@@ -356,11 +360,14 @@ double LinearSolverState::setUp()
   try
   {
     this->findEmptyRows();
+    // Without this call, PETSc would defer the factorizations of blocks to the first solve, where
+    // they would be timed.
     petsc(KSPSetUp(this->Solver));
     petsc(KSPSetUpOnBlocks(this->Solver));
   }
   catch (const PetscError& error)
   {
+    // PETSc's error code does not distinguish this case, so its message is searched.
     const bool indefinite =
       std::string(error.what()).find("not positive definite") != std::string::npos;
     this->Failure = indefinite ? SolveReason::IndefiniteMatrix : SolveReason::PreconditionerFailed;
@@ -480,11 +487,13 @@ LinearSolution LinearSolverState::attempt(const double* b, double* x)
   }
 
   PetscVector rightHandSide = this->Objects.createVector(), unknowns = this->Objects.createVector();
+  // The right-hand side consists of contributions of all ranks, the guess of values.
   this->Objects.add(b, rightHandSide);
   this->Objects.copyIn(x, unknowns);
   this->applyTolerances();
   const Stopwatch time;
   const bool direct = this->Options.method == KrylovMethod::Direct;
+  // A direct solve starts from 0, because KSPPREONLY rejects a nonzero initial guess.
   petsc(KSPSetInitialGuessNonzero(
     this->Solver, this->Options.initialGuess && !direct ? PETSC_TRUE : PETSC_FALSE));
   PetscInt most = 0;
@@ -506,6 +515,7 @@ LinearSolution LinearSolverState::attempt(const double* b, double* x)
       !this->Options.ritzValues && solution.iterations < most && solution.trueResidual > 0.0 &&
       this->tighten(solution, most);
   }
+  // The next solve starts with the original tolerances.
   if (this->Failure == SolveReason::Exact)
   {
     petsc(KSPSetTolerances(this->Solver, this->Relative, this->Absolute, PETSC_DEFAULT, most));
@@ -520,11 +530,13 @@ bool LinearSolverState::tighten(const LinearSolution& solution, int most)
   constexpr double margin = 0.1;
   PetscReal relative = 0.0;
   petsc(KSPGetTolerances(this->Solver, &relative, nullptr, nullptr, nullptr));
+  // The norm of the method and the true residual are assumed to be proportional.
   relative *= margin * this->allowedResidual() / solution.trueResidual;
   if (!(relative > std::numeric_limits<double>::epsilon()))
   {
     return false;
   }
+  // Iterations of earlier rounds count toward the limit.
   this->Before = solution.iterations;
   petsc(KSPSetTolerances(
     this->Solver, relative, this->Absolute, PETSC_DEFAULT, most - solution.iterations));
@@ -540,6 +552,7 @@ void LinearSolverState::takeSolution(
   std::vector<double> values(static_cast<std::size_t>(n));
   this->Objects.copyOut(unknowns, values.data());
   Residual residual;
+  // Ranks decide together, because the norms below are collective.
   const bool valid = !this->Objects.anywhere(!finite(values.data(), n));
   if (valid)
   {
@@ -627,6 +640,8 @@ void LinearSolverState::verify(
     return;
   }
   const double allowed = this->allowedResidual();
+  // For a badly scaled matrix, rounding alone may exceed the tolerance; this residual is also
+  // accepted.
   if (after <= std::max(allowed * before, ResidualFactor * this->Absolute) ||
     (after <= DirectTolerance * before && after <= this->roundingLevel(b, x)))
   {

@@ -256,6 +256,7 @@ void PetscSystem::borrowMatrix(bool copy)
   }
   petsc(MatCreateSeqAIJWithArrays(this->Comm, size, size, this->Offsets.data(), columns,
     const_cast<double*>(source.values.data()), this->Matrix.out()));
+  // Options that change the matrix in place must not modify the values of the caller.
   if (copy)
   {
     PetscMatrix own;
@@ -334,6 +335,8 @@ void PetscSystem::insertRows(const std::vector<PetscInt>& rowOf)
   {
     if (numbering.owned(this->Points[row / block]))
     {
+      // The counts from several ranks may include an entry more than once, but not exceed the
+      // number of columns.
       const auto at = static_cast<std::size_t>(rowOf[row] - first);
       own[at] = std::min(owned, static_cast<PetscInt>(countsOf(row)[0]));
       other[at] = std::min(all - owned, static_cast<PetscInt>(countsOf(row)[1]));

@@ -159,6 +159,7 @@ void destroyPutOff()
     const std::lock_guard<std::mutex> lock(putOff().Mutex);
     objects.swap(putOff().Objects);
   }
+  // Destruction runs outside the lock, which other threads need to put objects off.
   for (const auto& [object, destroy] : objects)
   {
     destroy(object);
@@ -192,6 +193,7 @@ PetscScope::PetscScope(PetscOptions database)
   : Lock(sessionMutex())
 {
   ensurePetsc();
+  // The callback detects that other code ends PETSc, which invalidates all its objects.
   if (!watched)
   {
     watched = PetscRegisterFinalize(petscEnds) == 0;
@@ -205,6 +207,7 @@ PetscScope::PetscScope(PetscOptions database)
     }
     database = this->Own;
   }
+  // Each nested scope collects its own messages.
   std::swap(this->Outer, collected());
   PetscPushErrorHandler(collectError, nullptr);
   PetscOptionsPush(database);
@@ -271,6 +274,7 @@ bool petscWatchable(const WatchLimits& limits)
     const PetscScope scope; // starts MPI in this thread, which must also finalize it
   }
   int level = MPI_THREAD_SINGLE;
+  // A host that started MPI may call it from its own threads at the same time.
   const int needed = ownMpi ? MPI_THREAD_SERIALIZED : MPI_THREAD_MULTIPLE;
   return ownPetsc && MPI_Query_thread(&level) == MPI_SUCCESS && level >= needed;
 }
