@@ -3,13 +3,13 @@
 
 #include "FetchOutput.h"
 #include "HistogramPlot.h"
+#include "ResultWatch.h"
 
 #include "pqApplicationCore.h"
 #include "pqOutputPort.h"
 #include "pqPVApplicationCore.h"
 #include "pqPipelineSource.h"
 #include "pqSelectionManager.h"
-#include "pqServerManagerModel.h"
 #include "pqSettings.h"
 
 #include "vtkPVDataInformation.h"
@@ -135,9 +135,6 @@ pqTautlineHistogram::pqTautlineHistogram(
   layout->addLayout(bottom);
   layout->addWidget(this->Bins);
 
-  auto* model = pqApplicationCore::instance()->getServerManagerModel();
-  QObject::connect(
-    model, &pqServerManagerModel::dataUpdated, this, &pqTautlineHistogram::dataUpdated);
   QObject::connect(pqPVApplicationCore::instance()->selectionManager(),
     &pqSelectionManager::selectionChanged, this, &pqTautlineHistogram::selectionChanged);
   const auto changed = QOverload<int>::of(&QComboBox::currentIndexChanged);
@@ -153,13 +150,17 @@ pqTautlineHistogram::pqTautlineHistogram(
   QObject::connect(this->Clear, &QToolButton::clicked, this, &pqTautlineHistogram::clear);
   this->scaleChanged();
   this->refresh();
-  // A filter that is being made has the state of one that was applied; fetching would execute it.
-  this->Source = model->findItem<pqPipelineSource*>(smproxy);
-  QTimer::singleShot(0, this, &pqTautlineHistogram::refresh);
+  this->Watch = new tautline::ResultWatch(this, smproxy, [this] { this->refresh(); });
 }
 
 //------------------------------------------------------------------------------
 pqTautlineHistogram::~pqTautlineHistogram() = default;
+
+//------------------------------------------------------------------------------
+pqPipelineSource* pqTautlineHistogram::source() const
+{
+  return this->Watch ? this->Watch->source() : nullptr;
+}
 
 //------------------------------------------------------------------------------
 void pqTautlineHistogram::updateWidget(bool showAdvanced)
@@ -168,26 +169,15 @@ void pqTautlineHistogram::updateWidget(bool showAdvanced)
 }
 
 //------------------------------------------------------------------------------
-void pqTautlineHistogram::dataUpdated(pqPipelineSource* source)
-{
-  if (source->getProxy() == this->proxy())
-  {
-    this->Source = source;
-    // After the update: fetching updates a pipeline itself.
-    QTimer::singleShot(0, this, &pqTautlineHistogram::refresh);
-  }
-}
-
-//------------------------------------------------------------------------------
 void pqTautlineHistogram::refresh()
 {
   this->Pause.stop();
   this->Histograms.clear();
   this->Choices.clear();
-  if (this->Source)
+  if (pqPipelineSource* source = this->source())
   {
-    const auto statistics = tautline::fetchOutput(this->Source, "Statistics");
-    const auto histogram = tautline::fetchOutput(this->Source, "Histogram");
+    const auto statistics = tautline::fetchOutput(source, "Statistics");
+    const auto histogram = tautline::fetchOutput(source, "Histogram");
     this->Histograms =
       tautline::histogramsOf(vtkTable::SafeDownCast(statistics), vtkTable::SafeDownCast(histogram));
   }
@@ -296,7 +286,8 @@ void pqTautlineHistogram::clear()
 void pqTautlineHistogram::selectElements()
 {
   this->Pause.stop();
-  if (!this->Source)
+  pqPipelineSource* source = this->source();
+  if (!source)
   {
     return;
   }
@@ -314,7 +305,7 @@ void pqTautlineHistogram::selectElements()
   duration.start();
   this->Selecting = true;
   const vtkTypeInt64 selected = tautline::selectWhere(
-    this->Source->getOutputPort(0), conditions, this->Combination->currentIndex() == AllConditions);
+    source->getOutputPort(0), conditions, this->Combination->currentIndex() == AllConditions);
   this->Selecting = false;
   this->Pause.setInterval(
     std::max(ShortestPause, PauseOverDuration * static_cast<int>(duration.elapsed())));
@@ -365,13 +356,13 @@ void pqTautlineHistogram::showConditions()
 void pqTautlineHistogram::describe(vtkTypeInt64 selected)
 {
   this->showConditions();
-  if (this->Choices.empty())
+  pqPipelineSource* source = this->source();
+  if (this->Choices.empty() || !source)
   {
     this->Count->clear();
     return;
   }
-  const vtkTypeInt64 cells =
-    this->Source->getOutputPort(0)->getDataInformation()->GetNumberOfCells();
+  const vtkTypeInt64 cells = source->getOutputPort(0)->getDataInformation()->GetNumberOfCells();
   const double share = cells > 0 ? 100.0 * static_cast<double>(selected) / cells : 0.0;
   this->Count->setText(
     QString("%1 of %2 cells (%3 %)").arg(selected).arg(cells).arg(QString::number(share, 'g', 3)));

@@ -36,6 +36,7 @@ class pqPipelineSource;
 namespace tautline
 {
 class HistogramPlot;
+class ResultWatch;
 }
 
 class pqTautlineHistogram : public pqPropertyGroupWidget
@@ -51,7 +52,6 @@ public:
   void updateWidget(bool showAdvanced) override;
 
 private Q_SLOTS:
-  void dataUpdated(pqPipelineSource* source);
   void refresh();
   void metricChanged();
   void scaleChanged();
@@ -61,6 +61,7 @@ private Q_SLOTS:
   void selectionChanged(pqOutputPort* port);
 
 private:
+  pqPipelineSource* source() const; ///< null if it is not in the pipeline
   /// The bars chosen of a metric.
   struct Choice
   {
@@ -75,7 +76,7 @@ private:
   void selectElements(); // not select(), which ParaView calls for each widget of a panel
   void describe(vtkTypeInt64 selected);
 
-  pqPipelineSource* Source = nullptr;
+  tautline::ResultWatch* Watch = nullptr;
   std::vector<tautline::MetricHistogram> Histograms;
   std::map<std::string, Choice> Choices; ///< by metric
   bool Selecting = false;

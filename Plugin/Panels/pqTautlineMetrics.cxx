@@ -3,12 +3,10 @@
 
 #include "FetchOutput.h"
 #include "MetricGroups.h"
+#include "ResultWatch.h"
 
 #include "tautline/Quality/Metrics.h"
 
-#include "pqApplicationCore.h"
-#include "pqPipelineSource.h"
-#include "pqServerManagerModel.h"
 #include "pqTreeWidget.h"
 
 #include "vtkCommand.h"
@@ -23,7 +21,6 @@
 #include <QHeaderView>
 #include <QLineEdit>
 #include <QSignalBlocker>
-#include <QTimer>
 #include <QTreeWidgetItem>
 #include <QVBoxLayout>
 
@@ -97,12 +94,7 @@ pqTautlineMetrics::pqTautlineMetrics(
   this->addPropertyLink(this, "values", SIGNAL(valuesChanged()), smproperty);
   this->openChosen();
 
-  auto* model = pqApplicationCore::instance()->getServerManagerModel();
-  QObject::connect(
-    model, &pqServerManagerModel::dataUpdated, this, &pqTautlineMetrics::dataUpdated);
-  // A filter that is being made has the state of one that was applied; fetching would execute it.
-  this->Source = model->findItem<pqPipelineSource*>(smproxy);
-  QTimer::singleShot(0, this, &pqTautlineMetrics::count);
+  this->Watch = new tautline::ResultWatch(this, smproxy, [this] { this->count(); });
 }
 
 //------------------------------------------------------------------------------
@@ -258,24 +250,13 @@ void pqTautlineMetrics::itemChanged(QTreeWidgetItem* item)
 }
 
 //------------------------------------------------------------------------------
-void pqTautlineMetrics::dataUpdated(pqPipelineSource* source)
-{
-  if (source->getProxy() == this->proxy())
-  {
-    this->Source = source;
-    // After the update: fetching updates a pipeline itself.
-    QTimer::singleShot(0, this, &pqTautlineMetrics::count);
-  }
-}
-
-//------------------------------------------------------------------------------
 void pqTautlineMetrics::count()
 {
   std::map<QString, double> outside, failed;
-  if (this->Source)
+  if (pqPipelineSource* source = this->Watch->source())
   {
-    outside = countsOf(tautline::fetchOutput(this->Source, "Statistics"), "OutsideAcceptable");
-    failed = countsOf(tautline::fetchOutput(this->Source, "Criteria"), "Failed");
+    outside = countsOf(tautline::fetchOutput(source, "Statistics"), "OutsideAcceptable");
+    failed = countsOf(tautline::fetchOutput(source, "Criteria"), "Failed");
   }
   const QSignalBlocker blocker(this->Tree);
   const auto all = this->items();

@@ -25,9 +25,13 @@
 class QLineEdit;
 class QTreeWidget;
 class QTreeWidgetItem;
-class pqPipelineSource;
 class vtkEventQtSlotConnect;
 class vtkSMEnumerationDomain;
+
+namespace tautline
+{
+class ResultWatch;
+}
 
 class pqTautlineMetrics : public pqPropertyWidget
 {
@@ -54,7 +58,6 @@ private Q_SLOTS:
   /// Shows the metrics whose label has the text, or whose group has it in its title.
   void narrow(const QString& text);
   void itemChanged(QTreeWidgetItem* item);
-  void dataUpdated(pqPipelineSource* source);
   /// Writes the numbers of bad elements beside the metrics.
   void count();
 
@@ -66,7 +69,7 @@ private:
   vtkSMEnumerationDomain* Domain;
   QLineEdit* Filter;
   QTreeWidget* Tree;
-  pqPipelineSource* Source = nullptr; ///< after it was executed
+  tautline::ResultWatch* Watch = nullptr;
   vtkSmartPointer<vtkEventQtSlotConnect> Observer;
 };
 
