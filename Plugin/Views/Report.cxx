@@ -250,6 +250,11 @@ void findBefore(pqPipelineSource* source, vtkSMSourceProxy* like, Sides& sides)
     {
       return;
     }
+    // Element Quality passes its mesh on: comparing the two would fetch the mesh for nothing.
+    if (isQuality(*step))
+    {
+      continue;
+    }
     pqServer* server = input->getServer();
     const auto port = static_cast<unsigned int>(input->getPortNumber());
     const Data mesh = fetchAll(input->getSourceProxy(), port, server);
