@@ -12,7 +12,8 @@ namespace tautline
 namespace
 {
 
-const QColor Colors[] = { QColor(31, 119, 180), QColor(214, 96, 16) };
+// Green and orange: blue marks inverted elements, here as elsewhere.
+const QColor Colors[] = { QColor(27, 120, 55), QColor(214, 96, 16) };
 
 /// The range of an axis, and the position of a value in it.
 struct Axis
