@@ -5,7 +5,7 @@ ParaView clears the stack after each command of the Python shell: between the st
 """
 
 from paraview import servermanager, simple
-from session_checks import check
+from session_checks import check, find
 
 
 def labels():
@@ -27,3 +27,9 @@ def sources(*expected):
     assert sorted(names) == sorted(expected), names
     kinds = [view.GetXMLName() for view in simple.GetViews()]
     assert kinds.count("RenderView") == len(simple.GetLayouts()) == 1, kinds
+
+
+@check
+def delete(name):
+    """Delete a filter as a script does, which no open dialog prevents."""
+    simple.Delete(find(name))
