@@ -4,9 +4,9 @@
 Four combinations of solver and preconditioner solve the same problem; the fastest one that converges is recommended.
 
 Shell: tautline solver-study plate.vtu --combinations 1,4,13,16 --no-conditions --csv study.csv
-Look at: the table that is printed.
+Look at: the numbers of iterations in the table.
 State: SolverStudy(Input=before, Combinations=[1, 4, 13, 16], EstimateConditions=0)
-Picture: edges
+Picture: edges table
 """
 
 import sys

@@ -4,11 +4,13 @@
 Each example writes before.vtu and after.vtu (or .vti), which the picture pictures/NAME.png shows side by side, colored
 by the array that the line "Picture:" of its docstring names; "edges" has no colors, "clip" shows the half behind the
 middle, "inside" the elements that fail (invalid, or beyond the range of the colors) inside a translucent surface, both
-before and after, and "alone" does not show the mesh before. The colors are the plugin's: pale is good, dark red is
+before and after, "near" a close-up of the element with the largest value, "table" the iterations of study.csv beside
+the mesh, and "alone" does not show the mesh before. The colors are the plugin's: pale is good, dark red is
 bad, blue is inverted and nothing else; other fields go from pale to dark green.
 measured.json has the CPU seconds and the memory, MiB, of the process. Needs a display; Testing/headless.sh gives one.
 """
 
+import csv
 import json
 import re
 import resource
@@ -40,6 +42,9 @@ SIZE = (560, 280)  # of a picture, pixels
 LEGEND = 40 / 280  # the part of the height below the meshes
 COLORS = (64, 32, 16)  # of its palette, for small files
 MOST_BYTES = 40_000
+CLOSE_UP = 3  # the zoom on one element
+THICK = 5  # edges of this element, pixels
+TABLE = "study.csv"
 #: Runs a script and prints the peak memory of the process.
 MEASURE = """
 import os, runpy, sys
@@ -164,8 +169,29 @@ def colors_of(array: str, span: tuple, meshes: list):
     return transfer(FIELD, *span, {}), title
 
 
-def draw(window, mesh, array: str, how: list[str], colors, inside, place) -> None:
-    """One mesh; `inside` has the elements to show in a translucent surface, or is None."""
+def worst(mesh, array: str) -> int:
+    """The element with the largest value."""
+    return int(vtk_to_numpy(array_of(mesh, array)).argmax())
+
+
+def center_of(mesh, cell: int) -> tuple:
+    box = mesh.GetCell(cell).GetBounds()
+    return tuple((box[2 * k] + box[2 * k + 1]) / 2 for k in range(3))
+
+
+def outline(mesh, cell: int, array: str, colors) -> vtkActor:
+    """An element with thick edges in its color: a flat one has no visible area."""
+    part = extracted(mesh, [cell])
+    actor = actor_of(part, surface(part, False), array, colors)
+    actor.GetProperty().EdgeVisibilityOff()
+    actor.GetProperty().SetRepresentationToWireframe()
+    actor.GetProperty().SetLineWidth(THICK)
+    return actor
+
+
+def draw(window, mesh, array: str, how: list[str], colors, inside, place, focus=None) -> None:
+    """One mesh; `inside` has the elements to show in a translucent surface, or is None; `focus` is the center of a
+    close-up."""
     renderer = vtkRenderer()
     renderer.SetBackground(1, 1, 1)
     renderer.SetViewport(*place)
@@ -179,6 +205,8 @@ def draw(window, mesh, array: str, how: list[str], colors, inside, place) -> Non
         renderer.AddActor(whole)
     else:
         renderer.AddActor(actor_of(mesh, surface(mesh, "clip" in how), array, colors))
+        if focus:
+            renderer.AddActor(outline(mesh, worst(mesh, array), array, colors))
     bounds = mesh.GetBounds()
     camera = renderer.GetActiveCamera()
     camera.ParallelProjectionOn()
@@ -187,6 +215,11 @@ def draw(window, mesh, array: str, how: list[str], colors, inside, place) -> Non
         camera.SetViewUp(0, 0, 1)
     renderer.ResetCamera()
     camera.Zoom(1.15)
+    if focus:
+        shift = [to - now for to, now in zip(focus, camera.GetFocalPoint())]
+        camera.SetPosition(*(at + by for at, by in zip(camera.GetPosition(), shift)))
+        camera.SetFocalPoint(*focus)
+        camera.Zoom(CLOSE_UP)
     window.AddRenderer(renderer)
 
 
@@ -268,6 +301,20 @@ def add_legend(window, colors, title: str, names: list[str]) -> None:
     renderer.AddActor(bar)
 
 
+def add_table(window, file: Path) -> None:
+    """The iterations of a solver study, in the right half."""
+    renderer = vtkRenderer()
+    renderer.SetBackground(1, 1, 1)
+    renderer.SetViewport(0.5, LEGEND, 1, 1)
+    window.AddRenderer(renderer)
+    with file.open(encoding="utf-8", newline="") as lines:
+        rows = list(csv.DictReader(lines))
+    for i, (name, number) in enumerate([("", "iterations"), *((row["name"], row["iterations"]) for row in rows)]):
+        height = 0.8 - 0.6 * i / len(rows)
+        text_at(renderer, name, 0.05, height, False)
+        text_at(renderer, number, 0.72, height, False)
+
+
 def make_picture(folder: Path, what: str, file: Path) -> None:
     array, _, how = what.partition(" ")
     how = how.split()
@@ -282,13 +329,17 @@ def make_picture(folder: Path, what: str, file: Path) -> None:
     if "inside" in how:  # after, the same elements: a mesh whose defects are gone is not an empty surface
         shown = [failing(meshes[0], array, colors.GetRange()[1])] * len(meshes)
         assert len({mesh.GetNumberOfCells() for mesh in meshes}) == 1, what
+    focus = center_of(meshes[0], worst(meshes[0], array)) if "near" in how else None
+    panels = len(meshes) + ("table" in how)
     window = vtkRenderWindow()
     window.OffScreenRenderingOn()
     window.SetMultiSamples(0)
     window.SetSize(*SIZE)
     for i, mesh in enumerate(meshes):
-        place = (i / len(meshes), LEGEND, (i + 1) / len(meshes), 1)
-        draw(window, mesh, array, how, colors, shown[i], place)
+        place = (i / panels, LEGEND, (i + 1) / panels, 1)
+        draw(window, mesh, array, how, colors, shown[i], place, focus)
+    if "table" in how:
+        add_table(window, folder / TABLE)
     add_legend(window, colors, title, ["before", "after"] if len(meshes) > 1 else [])
     window.Render()
     image = vtkWindowToImageFilter()
