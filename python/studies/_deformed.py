@@ -117,7 +117,8 @@ CELLS_BY_SEED = 0.03
 #: Upper ends of the bins of TMP shape in tables; elements above the last one, and inverted ones, have their own
 #: columns.
 BINS = (0.1, 0.3, 1.0, 3.0, 10.0)
-_WARM, _COLD = "#d62728", "#1f4e79"
+#: Inverted elements, the blue of all pictures and color maps; other elements.
+_INVERTED, _VALID = "#0d59ff", "#808080"
 
 
 @dataclass
@@ -302,7 +303,7 @@ def section(mesh: vtkDataSet, axis: int, at: float) -> tuple[list[np.ndarray], n
 
 def strip(report: Report, file: str, rows: Sequence[Sequence[tuple[str, vtkDataSet | Deformed]]],
           windows: Sequence[Sequence[float] | None], cut: tuple[int, float] = (1, 0.5)) -> None:
-    """A picture of rows of meshes with inverted elements in red; volume meshes are cut by a plane (axis, position)."""
+    """A picture of rows of meshes with inverted elements in blue; volume meshes are cut by a plane (axis, position)."""
     drawings, titles = [], []
     for row in rows:
         for title, shown in row:
@@ -316,4 +317,4 @@ def strip(report: Report, file: str, rows: Sequence[Sequence[tuple[str, vtkDataS
             part = f", to {shown.reached:.3g} of the motion" if mesh is not shown and shown.reached < 1 else ""
             titles.append(f"{title}\n{np.count_nonzero(wrong)} inverted{part}")
     places = [window for row, window in zip(rows, windows) for _ in row]
-    report.polygons(file, titles, drawings, places, columns=max(len(row) for row in rows), colors=(_COLD, _WARM))
+    report.polygons(file, titles, drawings, places, columns=max(len(row) for row in rows), colors=(_VALID, _INVERTED))

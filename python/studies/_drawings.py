@@ -19,6 +19,8 @@ except ImportError:  # there are no pictures
 #: Direction of the light, and of the view, of surfaces in space.
 _LIGHT = np.array([0.4, -0.7, 0.6])
 _ELEVATION, _AZIMUTH = 22, -60
+#: Edges of elements: gray, as blue marks inverted elements.
+_EDGE = "#303030"
 
 
 def triangles(mesh: vtkDataSet) -> np.ndarray:
@@ -64,7 +66,7 @@ def surface_picture(report: Report, file: str, meshes: dict[str, vtkDataSet], co
         p, faces = points_of(mesh), triangles(mesh)
         if cells_of(mesh).shape[1] == 3:
             axis = figure.add_subplot(rows, columns, number)
-            axis.triplot(p[:, 0], p[:, 1], faces, linewidth=0.5, color="#1f4e79")
+            axis.triplot(p[:, 0], p[:, 1], faces, linewidth=0.5, color=_EDGE)
             axis.set_aspect("equal")
         else:
             axis = figure.add_subplot(rows, columns, number, projection="3d", proj_type="ortho")
@@ -76,8 +78,8 @@ def surface_picture(report: Report, file: str, meshes: dict[str, vtkDataSet], co
                                 | (centre[:, 2] > high[2] - near))]
             normals = np.cross(p[faces[:, 1]] - p[faces[:, 0]], p[faces[:, 2]] - p[faces[:, 0]])
             shade = np.abs(normals @ _LIGHT) / (np.linalg.norm(normals, axis=1) * np.linalg.norm(_LIGHT) + 1e-300)
-            colours = (0.55 + 0.4 * shade)[:, None] * np.array([[0.75, 0.87, 1.0]])
-            axis.add_collection3d(Poly3DCollection(p[faces], facecolors=colours, edgecolors="#1f4e79", linewidths=0.25))
+            colours = (0.55 + 0.4 * shade)[:, None] * np.array([[0.9, 0.9, 0.9]])
+            axis.add_collection3d(Poly3DCollection(p[faces], facecolors=colours, edgecolors=_EDGE, linewidths=0.25))
             axis.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
             axis.set_box_aspect(np.maximum(high - low, 1e-9))
             axis.view_init(_ELEVATION, _AZIMUTH)

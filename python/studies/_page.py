@@ -23,7 +23,7 @@ from ._verdicts import DOES_NOT_HOLD, HOLDS, NOT_DECIDED, TOO_SMALL, VARIES, WOR
 
 _CLASSES = {HOLDS: "yes", DOES_NOT_HOLD: "no", VARIES: "open", NOT_DECIDED: "open", TOO_SMALL: "open"}
 #: Shades of a channel in pictures, so that their colors are at most 256; 255 is a multiple of one less.
-_SHADES = 4
+_SHADES = 6
 _STYLE = """
 body { font: 15px/1.45 sans-serif; max-width: 70em; margin: 2em auto; padding: 0 1em; color: #202020 }
 table { border-collapse: collapse; margin: 0.5em 0; display: block; overflow-x: auto }
