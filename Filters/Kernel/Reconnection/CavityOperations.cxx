@@ -29,8 +29,7 @@ bool CavityOperations::aboveFloor(
   {
     return true;
   }
-  const std::array<double, 6> angles = dihedralAngles(p, a, b, c);
-  return *std::min_element(angles.begin(), angles.end()) >= this->floor.smallestAngle &&
+  return dihedralRange(p, a, b, c).smallest >= this->floor.smallestAngle &&
     measure(p, a, b, c).meanRatio >= this->floor.meanRatio;
 }
 

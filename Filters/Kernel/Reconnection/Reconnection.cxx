@@ -117,11 +117,9 @@ void addWorst(
     }
     const TetVertices& v = mesh.tet(t).vertices;
     const auto x = [&](int k) { return mesh.point(v[k]); };
-    for (double angle : dihedralAngles(x(0), x(1), x(2), x(3)))
-    {
-      record.smallestAngle = std::min(record.smallestAngle, angle);
-      record.largestAngle = std::max(record.largestAngle, angle);
-    }
+    const DihedralRange angles = dihedralRange(x(0), x(1), x(2), x(3));
+    record.smallestAngle = std::min(record.smallestAngle, angles.smallest);
+    record.largestAngle = std::max(record.largestAngle, angles.largest);
     meanRatio = std::min(meanRatio, measure(x(0), x(1), x(2), x(3)).meanRatio);
     // With weights 1, all angles are between asin(q) and 180 degrees minus it, and the power of the
     // mean ratio is above q. (A registry metric gives no such bounds: the weights are large.)

@@ -131,24 +131,40 @@ inline double exactQuality(
   return exactSign(roundedQuality(p, a, b, c, weights), p, a, b, c);
 }
 
-/// The six dihedral angles in degrees; for an inverted tetrahedron, the angles of its mirror image.
-inline std::array<double, 6> dihedralAngles(
-  const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c)
+/// The smallest and the largest dihedral angle of a tetrahedron, degrees.
+struct DihedralRange
+{
+  double smallest, largest;
+};
+
+/// The range of the six dihedral angles; for an inverted tetrahedron, of its mirror image.
+inline DihedralRange dihedralRange(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c)
 {
   const Vec3 u = a - p, v = b - p, w = c - p;
   // Outward normals of the faces opposite p, a, b, c.
   const Vec3 n[4] = { cross(b - a, c - a), cross(w, v), cross(u, w), cross(v, u) };
-  std::array<double, 6> angles;
-  int k = 0;
+  // The angle between two normals is 180 degrees minus the dihedral angle. cosine / (|cosine| +
+  // sine) decreases with it from 1 to -1: it compares angles without atan2().
+  struct Turn
+  {
+    double sine, cosine, order;
+  };
+  Turn least = { 0.0, -1.0, -1.0 }, most = { 0.0, 1.0, 1.0 };
   for (int i = 0; i < 4; ++i)
   {
     for (int j = i + 1; j < 4; ++j)
     {
-      const double turn = std::atan2(norm(cross(n[i], n[j])), dot(n[i], n[j]));
-      angles[k++] = 180.0 - turn * (180.0 / Pi);
+      const double sine = norm(cross(n[i], n[j])), cosine = dot(n[i], n[j]);
+      const double sum = std::abs(cosine) + sine;
+      // A face without area has no normal: no turn, as atan2(0, 0).
+      const Turn turn = { sine, cosine, sum > 0.0 ? cosine / sum : 1.0 };
+      least = turn.order > least.order ? turn : least;
+      most = turn.order < most.order ? turn : most;
     }
   }
-  return angles;
+  const auto dihedral = [](const Turn& turn)
+  { return 180.0 - std::atan2(turn.sine, turn.cosine) * (180.0 / Pi); };
+  return { dihedral(most), dihedral(least) };
 }
 }
 #endif

@@ -136,20 +136,31 @@ TAUTLINE_PART(testQuality)
   const auto best = measure(ideal[0], ideal[1], ideal[2], ideal[3]);
   TAUTLINE_CHECK_NEAR(best.meanRatio, 1.0, 1e-14);
   TAUTLINE_CHECK_NEAR(best.sine, std::sqrt(8.0) / 3.0, 1e-14);
+  // A flat tetrahedron, folded along a diagonal of the square; a face without area.
+  const Vec3 o = { 0, 0, 0 }, x = { 1, 0, 0 }, y = { 0, 1, 0 }, xy = { 1, 1, 0 };
+  TAUTLINE_CHECK_EQUAL(dihedralRange(o, x, xy, y).smallest, 0.0);
+  TAUTLINE_CHECK_EQUAL(dihedralRange(o, x, xy, y).largest, 180.0);
+  TAUTLINE_CHECK_EQUAL(dihedralRange(o, o, x, y).largest, 180.0);
   Random random(1);
   for (int i = 0; i < 1000; ++i)
   {
     const Vec3 p = random.vector(-1, 1), a = random.vector(-1, 1), b = random.vector(-1, 1),
                c = random.vector(-1, 1);
     const TetrahedronMeasures m = measure(p, a, b, c);
-    double sine = smallestOf<double>(
-      1.0, dihedralAngles(p, a, b, c), [&](double angle) { return std::sin(angle * Pi / 180.0); });
+    const DihedralRange angles = dihedralRange(p, a, b, c);
+    const double sine =
+      std::min(std::sin(angles.smallest * Pi / 180.0), std::sin(angles.largest * Pi / 180.0));
     TAUTLINE_CHECK_NEAR(std::abs(m.sine), sine, 1e-12);
     TAUTLINE_CHECK_EQUAL(m.determinant > 0.0, m.sine > 0.0);
     if (m.determinant > 0.0)
     {
       const double imr = valueOf(CellType::Tetrahedron, { p, a, b, c }, Metric::InverseMeanRatio);
       TAUTLINE_CHECK_RELATIVE(std::pow(m.meanRatio, -2.0 / 3.0), imr, 1e-12);
+      const auto angle = [&](Metric metric) {
+        return valueOf(CellType::Tetrahedron, { p, a, b, c }, metric);
+      };
+      TAUTLINE_CHECK_NEAR(angles.smallest, angle(Metric::MinimumAngle), 1e-9);
+      TAUTLINE_CHECK_NEAR(angles.largest, angle(Metric::MaximumAngle), 1e-9);
     }
   }
 }
