@@ -9,7 +9,7 @@ Shell: tautline condition perturbed.vtu --preconditioner jacobi -o before.vtu
 Shell: tautline optimize perturbed.vtu -o optimized.vtu
 Shell: tautline condition optimized.vtu --preconditioner jacobi -o after.vtu
 Look at: the dark red element in the close-up, which is a hundred times as stiff as the mean, and its share.
-State: ConditionEstimator(Input=MeshOptimizer(Input=before), Preconditioner="Jacobi")
+State: ConditionEstimator(Input=OptimizeMesh(Input=before), Preconditioner="Jacobi")
 Picture: Excess near
 """
 
