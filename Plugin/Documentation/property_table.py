@@ -13,6 +13,7 @@ GROUPS = ("filters", "sources", "writers")  # visible to users; readers are sour
 METRIC = "Inverse mean ratio"  # the first entry of a list of metrics
 COLUMNS = '<tr><th width="22%">Property</th><th width="16%">Default</th><th width="62%">Description</th></tr>'
 BULLET = re.compile(r"^[*-] ", re.MULTILINE)
+LONG = 8  # characters of a number, from which it is rounded to six digits
 DEFAULT_VISIBILITY = "tautline_default_visibility"  # a hint: not advanced under a condition
 VTK_TYPES = {"vtkCompositeDataSet": None, "vtkSelection": "a selection"}  # None: stated otherwise
 
@@ -69,6 +70,8 @@ def default_of(item) -> str:
     entries = entries_of(item)
     if entries:
         return entries.get(values, values)
+    if item.tag == "DoubleVectorProperty":
+        return " ".join(f"{float(value):.6g}" if len(value) > LONG else value for value in values.split())
     return "none" if values in ("None", "none") else values
 
 
@@ -134,7 +137,10 @@ def row_of(item, proxy) -> tuple:
     shown = condition_of(item, proxy)
     usual = condition_of(item, proxy, DEFAULT_VISIBILITY)
     conditions = [f"Shown if {shown}." if shown else "", f"Advanced unless {usual}." if usual else ""]
-    parts = [text, range_of(item), *conditions]
+    allowed = range_of(item)
+    if allowed == "At least 0." and "Above 0." in text:  # a domain has no open range
+        allowed = ""
+    parts = [text, allowed, *conditions]
     return label, html.escape(default_of(item)), " ".join(filter(None, parts))
 
 
@@ -152,7 +158,7 @@ def table_of(proxy) -> str:
     for item in filter(is_listed, proxy):
         section = sections.setdefault(titles.get(item.get("name")), [])
         section.append(row_of(item, proxy))
-    lines = ['<table width="100%">', COLUMNS]
+    lines = ['<table class="docutils" width="100%">', COLUMNS]
     for title, rows in sections.items():
         lines += [f'<tr><th colspan="3">{html.escape(title)}</th></tr>'] if title else []
         for label, default, text in rows:
