@@ -13,6 +13,7 @@ mathjax2_config = {"SVG": {"linebreaks": {"automatic": True}}}
 html_theme = "sphinx_rtd_theme"
 html_show_sourcelink = False
 html_copy_source = False
+html_use_index = False  # the pages have no index entries
 html_theme_options = {"navigation_depth": 2, "collapse_navigation": True}
 html_static_path = ["static"]
 html_css_files = ["style.css"]
