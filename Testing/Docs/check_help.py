@@ -18,7 +18,8 @@ from pathlib import Path
 QUERY = "SELECT Name, Data FROM FileNameTable JOIN FileDataTable ON Id = FileId WHERE Data IS NOT NULL"
 CONTENTS = "SELECT Data FROM ContentsTable"
 LINK = re.compile(r'(?:href|src)="([^"]+)"')
-SECTIONS = ("<strong>Purpose.</strong>", "<img ", "<!-- test: pvpython -->", '<table class="docutils"')  # of the page of a proxy
+#: Of the page of a proxy.
+SECTIONS = ("<strong>Purpose.</strong>", "<img ", "<!-- test: pvpython -->", '<table class="docutils"')
 WIDEST = 1200  # pixels of a picture; pages show wide ones scaled
 
 
