@@ -18,7 +18,7 @@ from pathlib import Path
 QUERY = "SELECT Name, Data FROM FileNameTable JOIN FileDataTable ON Id = FileId WHERE Data IS NOT NULL"
 CONTENTS = "SELECT Data FROM ContentsTable"
 LINK = re.compile(r'(?:href|src)="([^"]+)"')
-#: Of the page of a proxy.
+#: The parts that the page of a proxy has.
 SECTIONS = ("<strong>Purpose.</strong>", "<img ", "<!-- test: pvpython -->", '<table class="docutils"')
 WIDEST = 1200  # pixels of a picture; pages show wide ones scaled
 
