@@ -128,11 +128,13 @@ std::vector<RemainingElement> remainingOf(const std::vector<signed char>& obstac
   const std::vector<double>& qualities, const std::vector<double>& bounds,
   const ImprovedCells& improved, Index first)
 {
+  constexpr auto none = static_cast<signed char>(ReconnectionObstacle::None);
   std::vector<RemainingElement> remaining;
+  remaining.reserve(obstacles.size() - std::count(obstacles.begin(), obstacles.end(), none));
   for (std::size_t i = 0; i < obstacles.size(); ++i)
   {
     pollInterruption(static_cast<Index>(i));
-    if (obstacles[i] != static_cast<signed char>(ReconnectionObstacle::None))
+    if (obstacles[i] != none)
     {
       remaining.push_back(
         { first + static_cast<Index>(i), improved.smallestAngles[i], improved.inverseMeanRatios[i],

@@ -47,6 +47,18 @@ inline Packet abs(Packet x)
   return reinterpret_cast<Packet>(reinterpret_cast<Mask>(x) & INT64_MAX);
 }
 
+/**
+ * @brief A number that decreases from 1 to -1 as the angle with this sine (at least 0) and cosine
+ * increases from 0 to pi; much cheaper than the angle. If both are 0, it is 1, as for the angle 0.
+ * @tparam Number double or Packet
+ */
+template <class Number>
+Number rankOfAngle(Number sine, Number cosine)
+{
+  const Number size = sine + (cosine < 0.0 ? -cosine : cosine);
+  return size > 0.0 ? cosine / size : Number{} + 1.0;
+}
+
 /// -1, 0 or 1.
 inline Packet signOf(Packet x)
 {

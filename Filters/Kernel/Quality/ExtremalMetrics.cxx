@@ -216,14 +216,6 @@ void scaledJacobian(const BatchContext& context, Batch& batch)
 }
 
 //------------------------------------------------------------------------------
-/// A number that decreases from 1 to -1 as the angle with this sine (at least 0) and cosine
-/// increases from 0 to pi; much cheaper than the angle. If a vector vanishes, the angle is 0.
-Packet rankOfAngle(Packet sine, Packet cosine)
-{
-  const Packet size = sine + abs(cosine);
-  return select(size > 0.0, cosine / size, broadcast(1.0));
-}
-
 /// The angle between vectors of length 1, in degrees; 0 if one has length 0.
 Packet angleOf(Packet sine, Packet cosine)
 {

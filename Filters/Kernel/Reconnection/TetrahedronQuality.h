@@ -17,6 +17,7 @@
 
 #include "MetricQuality.h"
 #include "tautline/Adaptation/MetricTensor.h"
+#include "tautline/Core/Packet.h"
 #include "tautline/Core/Types.h"
 #include "tautline/Geometry/Predicates.h"
 
@@ -143,11 +144,11 @@ inline DihedralRange dihedralRange(const Vec3& p, const Vec3& a, const Vec3& b, 
   const Vec3 u = a - p, v = b - p, w = c - p;
   // Outward normals of the faces opposite p, a, b, c.
   const Vec3 n[4] = { cross(b - a, c - a), cross(w, v), cross(u, w), cross(v, u) };
-  // The angle between two normals is 180 degrees minus the dihedral angle. cosine / (|cosine| +
-  // sine) decreases with it from 1 to -1: it compares angles without atan2().
+  // The angle between two normals is 180 degrees minus the dihedral angle; ranks compare angles
+  // without atan2(). A face without area has no normal: no turn.
   struct Turn
   {
-    double sine, cosine, order;
+    double sine, cosine, rank;
   };
   Turn least = { 0.0, -1.0, -1.0 }, most = { 0.0, 1.0, 1.0 };
   for (int i = 0; i < 4; ++i)
@@ -155,11 +156,9 @@ inline DihedralRange dihedralRange(const Vec3& p, const Vec3& a, const Vec3& b, 
     for (int j = i + 1; j < 4; ++j)
     {
       const double sine = norm(cross(n[i], n[j])), cosine = dot(n[i], n[j]);
-      const double sum = std::abs(cosine) + sine;
-      // A face without area has no normal: no turn, as atan2(0, 0).
-      const Turn turn = { sine, cosine, sum > 0.0 ? cosine / sum : 1.0 };
-      least = turn.order > least.order ? turn : least;
-      most = turn.order < most.order ? turn : most;
+      const Turn turn = { sine, cosine, rankOfAngle(sine, cosine) };
+      least = turn.rank > least.rank ? turn : least;
+      most = turn.rank < most.rank ? turn : most;
     }
   }
   const auto dihedral = [](const Turn& turn)
