@@ -31,7 +31,8 @@ class ResultWatch : public QObject
 public:
   /// @param widget the widget to show the result in, which owns the watch
   /// @param proxy the filter
-  /// @param refresh shows the result; called once at first, possibly before the filter is executed
+  /// @param refresh shows the result; also called when the widget is first shown, possibly before
+  /// the filter is executed
   ResultWatch(QWidget* widget, vtkSMProxy* proxy, std::function<void()> refresh);
 
   /// The filter, or null if it is not in the pipeline.

@@ -22,7 +22,7 @@ TEXTS = (
     (".cxx", "  refuse(mesh); // with a message\n", []),
     (".xml", '<Documentation>The filter refuses it.</Documentation>\n<a name="b"/>\n', [(1, "refuse")]),
     (".py", "x = 1  # Starts anew.\n", [(1, "anew")]),
-    (".py", 'text = f"The mesh was {wording(\'made-anew\')} among {n} processes"\n', []),
+    (".py", 'text = f"The mesh was {wording(\'divided-anew\')} among {n} processes"\n', []),
     (".md", "Stop after so\nmany seconds.\n", [(1, "so many")]),
     (".sh", "# mend the cause, as recommended\n", [(1, "mend")]),
     (".h", "// Valid (but for\n// tangling).\n", [(1, "but for")]),

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Which solver for this mesh?
 
-Four combinations of solver and preconditioner solve the same problem; the fastest one that converges is recommended.
+Four combinations of solver and preconditioner solve the same problem; the fastest one that converges is recommended if
+the times differ by more than the noise.
 
 Shell: tautline solver-study plate.vtu --combinations 1,4,13,16 --no-conditions --csv study.csv
 Look at: the numbers of iterations in the table.
